@@ -34,7 +34,7 @@ from cellcolor.frontend.build import result_of
 from cellcolor.frontend.parts.surface import bisected
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages, run_stages, with_finer_borders
+from cellcolor.frontend.stages import Stages, judged, with_finer_borders
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
@@ -79,7 +79,7 @@ def fine_everywhere(prepared: PreparedScene, clock: StageClock) -> tuple[Prepare
     while (marked := surface.lengths(surface.edges()) > longest).any():
         surface = bisected(surface, marked, "continuity.border_length_m")
     prepared = replace(prepared, surface=surface)
-    return prepared, run_stages(prepared, clock)
+    return prepared, judged(prepared, clock).stages
 
 
 def measured(

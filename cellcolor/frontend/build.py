@@ -317,7 +317,7 @@ def _report(
         notes=prepared.notes + remarks,
         stand_ins=tuple(map(report_on, prepared.robot.stand_ins)),
         slivers=cleaned.report,
-        injectivity=None if stages.named else _INJECTIVE,
+        injectivity=None if prepared.arm.named else _INJECTIVE,
         rounding=_rounding_in_words(surface, prepared.setup.task) if surface.faceted else None,
         limits=_limits_in_words(limits) if limits.positions else None,
     )

@@ -69,7 +69,6 @@ class Stages:
         coloring: the colors of all valid candidates.
         cleaned: the same after the sliver policy.
         branches: names of the branches, or of the sheets of an arm whose solutions have no names.
-        named: whether they are branches.
     """
 
     surface: Surface
@@ -79,7 +78,6 @@ class Stages:
     coloring: Coloring
     cleaned: Cleaned
     branches: tuple[str, ...]
-    named: bool
 
 
 @dataclass(frozen=True)
@@ -163,7 +161,6 @@ def colored_stages(
         coloring=coloring,
         cleaned=cleaned,
         branches=names,
-        named=prepared.arm.named,
     )
 
 
@@ -216,23 +213,15 @@ OFF = "tolerance"
 """The reason of a candidate that is valid where the part should stand and not wherever it may."""
 
 
-def run_stages(prepared: PreparedScene, clock: StageClock) -> Stages:
-    """All stages, one after the other.
+def judged(prepared: PreparedScene, clock: StageClock, before: Judged | None = None) -> Judged:
+    """All stages, where something may be known already.
+
+    Args:
+        before: as of :func:`judged_in_place`.
 
     Raises:
         InputError: a color has two configurations on one vertex; there are too many vertices for
             the turns of the tool; a displaced part stands in a link that cannot move.
-    """
-    return judged(prepared, clock).stages
-
-
-def judged(prepared: PreparedScene, clock: StageClock, before: Judged | None = None) -> Judged:
-    """All stages, where something may be known already; raises like :func:`run_stages`.
-
-    Args:
-        before: of the same scene on a surface whose vertices are the first ones of this one, with
-            the same normals. Only new vertices and new mesh edges are asked about, to the same
-            result.
     """
     own = None if before is None else before.in_place or before
     found = judged_in_place(prepared, clock, own)

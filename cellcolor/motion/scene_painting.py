@@ -21,7 +21,7 @@ from cellcolor.frontend.build import BuildResult, result_of
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.stage_clock import Progress, StageClock
-from cellcolor.frontend.stages import Stages, run_stages
+from cellcolor.frontend.stages import Stages, judged
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import Painted, paint
 from cellcolor.solvers.checked import solve
@@ -94,7 +94,7 @@ def paint_scene(
         stages = built.stages
         if not whole:
             finer = Surface(drawn.surface.vertices, drawn.surface.faces, normals)
-            stages = run_stages(replace(prepared, surface=finer), clock)
+            stages = judged(replace(prepared, surface=finer), clock).stages
         clock.begin("moving borders")
         branch = np.array(built.color_branch)
         cost = color_costs(prepared.robot, stages.candidates)[:, branch]

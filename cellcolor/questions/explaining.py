@@ -133,7 +133,7 @@ class _Asked:
         self._prepared, self._options = prepared, options
         self._known = self._solved(border_levels(prepared, self._clock), ())
         self.base, self.things = self._known.row, relaxations_of(prepared)
-        self._quick = self._known.coarse.stages.named and prepared.scene.tolerance is None
+        self._quick = prepared.arm.named and prepared.scene.tolerance is None
         # The scene without each thing that was tried alone, where more is valid then.
         self._freer: dict[Relaxation, _Known] = {}
 

@@ -17,7 +17,7 @@ from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import run_stages
+from cellcolor.frontend.stages import judged
 from cellcolor.questions.choosing_set_ups import Choice, choose
 from cellcolor.questions.placements import Pose
 from cellcolor.questions.placing import pose_of, stands_in
@@ -112,7 +112,7 @@ def _built(prepared: PreparedScene, pose: Pose, deadline: Deadline) -> LabelledS
     within = stands_in(there)
     if within is not None:
         raise InputError(None, "placement", f"the part stands in {within}")
-    surface, _ = labelled(there, run_stages(there, StageClock(deadline, None)), {})
+    surface, _ = labelled(there, judged(there, StageClock(deadline, None)).stages, {})
     if not any(surface.vertex_colors):
         raise InputError(None, None, "nothing is reached")
     decomposition_of(surface, deadline=deadline)  # refuses cells that are not planar

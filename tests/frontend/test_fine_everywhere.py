@@ -13,7 +13,7 @@ from cellcolor.frontend.build import result_of
 from cellcolor.frontend.parts.surface import bisected
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import run_stages, with_finer_borders
+from cellcolor.frontend.stages import judged, with_finer_borders
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
@@ -31,7 +31,7 @@ def test_a_tenth_of_the_vertices_gives_the_same_minimum_and_graph() -> None:
     while (marked := mesh.lengths(mesh.edges()) > LONGEST).any():
         mesh = bisected(mesh, marked, "continuity.border_length_m")
     prepared = replace(prepared, surface=mesh)
-    dense = result_of(prepared, run_stages(prepared, clock), clock).surface
+    dense = result_of(prepared, judged(prepared, clock).stages, clock).surface
     assert len(dense.vertices) >= 10 * len(sparse.vertices)
     first, second = (decomposition_of(surface).instance for surface in (sparse, dense))
     assert len(first.cells) == 3  # some cells are covered by two configurations, some by one

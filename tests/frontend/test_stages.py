@@ -17,7 +17,7 @@ from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.between import remains_valid
 from cellcolor.frontend.reach.validity import Judge, Verdicts
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages, judged, run_stages, with_finer_borders
+from cellcolor.frontend.stages import Stages, judged, with_finer_borders
 
 pytestmark = pytest.mark.second
 
@@ -69,7 +69,7 @@ def test_a_build_with_finer_borders_is_its_last_surface_judged_anew() -> None:
     prepared, stages = with_finer_borders(
         scene("wok_obstacle", border_length_m=0.012), StageClock(NEVER, None)
     )
-    anew = run_stages(prepared, StageClock(NEVER, None))
+    anew = judged(prepared, StageClock(NEVER, None)).stages
     assert in_bytes(stages) == in_bytes(anew)
     assert stages.cleaned.cracks == anew.cleaned.cracks
 

@@ -17,7 +17,7 @@ from cellcolor.frontend import Scene
 from cellcolor.frontend.parts.placement import Placement, Tolerance
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import OFF, run_stages
+from cellcolor.frontend.stages import OFF, judged
 from examples import examples
 
 NUMBERS = st.floats(-1, 1)
@@ -85,13 +85,13 @@ def scene() -> Scene:
 def test_colors_hold_wherever_the_part_may_stand(scene: Scene) -> None:
     """Against the scene with each displacement written in, built by itself."""
     asked = prepare(scene.varied(tolerance=OFTEN))
-    stages = run_stages(asked, StageClock(NEVER, None))
-    own = run_stages(prepare(scene), StageClock(NEVER, None))
+    stages = judged(asked, StageClock(NEVER, None)).stages
+    own = judged(prepare(scene), StageClock(NEVER, None)).stages
     valid, linked = own.candidates.valid.copy(), own.links.linked.copy()
     places = [there.scene.placement for there in asked.displaced()]
     assert len(places) == OFTEN["samples"]
     for placement in places:
-        there = run_stages(prepare(scene.varied(placement=placement)), StageClock(NEVER, None))
+        there = judged(prepare(scene.varied(placement=placement)), StageClock(NEVER, None)).stages
         valid &= there.candidates.valid
         linked &= there.links.linked
     assert (stages.candidates.valid == valid).all()

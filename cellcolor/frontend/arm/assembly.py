@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from cellcolor.data.wording import looks_like_degrees
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC, Urdf, check_urdf
+from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC, Urdf, axis_of, check_urdf
 
 _FLANGES = ("tool0", "flange", "ee_link", "tool_flange", "wrist_3_link", "link_6")  # of vendors
 
@@ -123,8 +123,7 @@ def _fix(joint: ET.Element, kind: str, position: float) -> None:
     joint.set("type", "fixed")
     if position == 0.0:
         return
-    axis, origin = joint.find("axis"), joint.find("origin")
-    along = _numbers("1 0 0" if axis is None else axis.get("xyz", "1 0 0"))
+    along, origin = _numbers(axis_of(joint)), joint.find("origin")
     xyz, rpy = (
         _numbers("0 0 0" if origin is None else origin.get(key, "0 0 0")) for key in ("xyz", "rpy")
     )

@@ -16,10 +16,6 @@ solutions (:mod:`cellcolor.frontend.arm.signs`); without signs equal ones are me
 is asked for, the ideal arm's solution of this branch is tried first, and all the others only where
 it does not lead to a solution of that name.
 
-Most poses of a UR5e have 8 starts, which lead to 8 solutions: no fold is near, and the poses around
-have their solutions beside these 8. At most there are 120 runs of Newton's method a pose (240
-without names), of 25 steps each.
-
 A missing solution shows. Of any pose that is not singular as many solutions have a positive task
 determinant as a negative one: their difference is the degree of the map from joint angles, which
 close on themselves, to poses, and it is zero since some poses are out of reach (Milnor, Topology
@@ -30,8 +26,8 @@ noticed; two that vanish together at a singularity are not missing.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -167,32 +163,22 @@ _ELBOW_AND_WRIST = 3  # the bits of both in a branch's index
 _MOST_SOLUTIONS = 16  # of six revolute joints
 
 
-class ClosedForm(Protocol):
-    """Inverse kinematics of an arm with exactly parallel or meeting axes."""
-
-    def __call__(
-        self, points: Array, directions: Array, /, *, branches: NDArray[np.intp] | None = None
-    ) -> Array:
-        """Points (k, 3) in m and unit vectors (k, 3) to solutions (k, s, joints) in rad.
-
-        They are NaN where there is none. Given branches (k,) it may leave out all others.
-        """
-
-
 @dataclass(frozen=True)
 class NearIdeal:
     """A calibrated arm: its axes are a little off those of an ideal arm.
 
     Attributes:
         robot: the true arm.
-        closed_form: that of the ideal arm.
+        closed_form: of the ideal arm: points (k, 3) in m and unit vectors (k, 3) to solutions
+            (k, s, joints) in rad, NaN where there is none. Given ``branches`` (k,) it may leave out
+            all others.
         off: the largest angle in rad and distance in m of an axis from the ideal one.
         signs: what names solutions; None if they have no names.
         sign_of: (8,) the index that the signs have for each branch.
     """
 
     robot: Robot
-    closed_form: ClosedForm
+    closed_form: Callable[..., Array]
     off: tuple[float, float]
     signs: Signs | None
     sign_of: NDArray[np.intp] = field(default_factory=lambda: np.arange(len(BRANCHES)))

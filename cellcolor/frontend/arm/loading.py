@@ -19,16 +19,13 @@ from cellcolor.frontend.arm.urdf import (
     PRISMATIC,
     Follower,
     Urdf,
+    axis_of,
     check_follower,
     load_urdf,
 )
 
 _FIX = "give its position under [robot.fixed_joints], as {} = 0.0"
-
-
 _NO_FORCE = "or leave the force constraint out: force = false under [constraints] of the setup"
-
-
 _WAY_OUT = (
     "; with more the arm is redundant, has endlessly many configurations for one pose, and colors "
     "are not defined: make the joints that are too many fixed, at angles of your choice, under "
@@ -87,10 +84,8 @@ def load_robot(
     _check_chain(whole, arm, tool, tip_link, (joints - prismatic, prismatic))
     if force and whole.weightless:
         fault = whole.weightless[0]
-        places = {f"link[{link}].inertial" for link in (tool.root, *tool.parent)}
-        of_tool = any((fault.field or "").startswith(place) for place in places)
         message = f"{fault.message} ({_NO_FORCE})"
-        raise InputError(str(tool_file if of_tool else arm_file), fault.field, message)
+        raise _in_its_file(InputError(None, fault.field, message), arm, tool)
     if force:
         _check_weight(whole, moving, arm, tool)
     text = pinocchio_text(whole)
@@ -145,8 +140,7 @@ def _check_chain(
     in_chain = [whole.joint_above[link] for link in whole.chain(tip_link)[1:]]
 
     def refuse(name: str, key: str, message: str) -> InputError:
-        file = tool.file if name in tool.joint_above.values() else arm.file
-        return InputError(str(file), f"joint[{name}]{key}", message)
+        return _in_its_file(InputError(None, f"joint[{name}]{key}", message), arm, tool)
 
     for name in in_chain:
         if name in whole.locked:
@@ -176,8 +170,10 @@ def _check_chain(
 
 
 def _in_its_file(error: InputError, arm: Urdf, tool: Urdf) -> InputError:
-    """An error about a joint of arm and tool as one tree, with the file that has the joint."""
-    of_tool = any((error.field or "").startswith(f"joint[{n}]") for n in tool.joint_above.values())
+    """An error about a joint or link of arm and tool as one tree, with the file that has it."""
+    places = [f"joint[{name}]" for name in tool.joint_above.values()]
+    places += [f"link[{name}]" for name in (tool.root, *tool.parent)]
+    of_tool = (error.field or "").startswith(tuple(places))
     return InputError(str((tool if of_tool else arm).file), error.field, error.message)
 
 
@@ -192,8 +188,7 @@ def _check_weight(whole: Urdf, moving: Mapping[str, Follower], arm: Urdf, tool: 
         above = [whole.joint_above[each] for each in whole.chain(link)[1:]]
         for name in [each for each in above if each in moving and link in heavy]:
             message = f"the weight of what follows another joint is not known to move ({_NO_FORCE})"
-            error = InputError(str(arm.file), f"joint[{name}].mimic", message)
-            raise _in_its_file(error, arm, tool)
+            raise _in_its_file(InputError(None, f"joint[{name}].mimic", message), arm, tool)
 
 
 def _counted(joints: tuple[int, int]) -> str:
@@ -209,16 +204,11 @@ def _where_given(limits: Array) -> Array:
 
 def _warnings(urdf: Urdf) -> tuple[str, ...]:
     """What a user would want to know of the files."""
-    found = []
     if not urdf.shapes:
-        found.append("arm and tool have no collision shapes at all: nothing is ever hit")
-    elif urdf.shapeless:
-        found.append(f"no collision shape, so hits nothing: {_listed(urdf.shapeless)}")
-    return tuple(found)
-
-
-def _listed(names: tuple[str, ...]) -> str:
-    return ", ".join(map(repr, names))
+        return ("arm and tool have no collision shapes at all: nothing is ever hit",)
+    if urdf.shapeless:
+        return (f"no collision shape, so hits nothing: {', '.join(map(repr, urdf.shapeless))}",)
+    return ()
 
 
 def _axes(model: pin.Model) -> Array:
@@ -287,15 +277,13 @@ def following_frames(
             check_follower(name, joints[name], own.kind)
         frame = model.frames[model.getFrameId(name, pin.FrameType.FIXED_JOINT)]
         parent = _carrier(urdf, urdf.parent[link], number, int(frame.parentJoint))
-        axis = joints[name].find("axis")
-        along = "1 0 0" if axis is None else axis.get("xyz", "1 0 0")
         number[link] = model.njoints + len(found)
         found.append(
             FollowingFrame(
                 link=link,
                 parent=parent,
                 placement=np.array(frame.placement.homogeneous),
-                axis=np.array([float(part) for part in along.split()]),
+                axis=np.array([float(part) for part in axis_of(joints[name]).split()]),
                 slides=own.kind == PRISMATIC,
                 leader=names.index(own.leader),
                 multiplier=own.multiplier,

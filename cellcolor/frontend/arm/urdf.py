@@ -167,11 +167,6 @@ class Urdf:
     locked: tuple[str, ...]
     followers: Mapping[str, Follower]
 
-    @property
-    def moving(self) -> tuple[str, ...]:
-        """Names of the joints that can move, in the order of the file."""
-        return tuple(self.kinds)
-
     def settled_followers(self) -> tuple[dict[str, Follower], dict[str, float]]:
         """Those of the ``locked`` joints that move, and the positions of the others.
 
@@ -363,7 +358,7 @@ def _weightless(
     tree: Urdf, links: dict[str, ET.Element], joints: dict[str, ET.Element], driven: set[str]
 ) -> Iterator[InputError]:
     """What keeps the force constraint from being tested; what nothing moves may weigh anything."""
-    for name in tree.moving:
+    for name in tree.kinds:
         fault = _effort(name, joints[name])
         if fault is not None:
             yield fault
@@ -397,11 +392,15 @@ def _effort(name: str, joint: ET.Element) -> InputError | None:
     return None
 
 
-def _axis(name: str, joint: ET.Element) -> None:
+def axis_of(joint: ET.Element) -> str:
+    """The axis of a joint as its file has it, three numbers."""
     axis = joint.find("axis")
+    return "1 0 0" if axis is None else axis.get("xyz", "1 0 0")
+
+
+def _axis(name: str, joint: ET.Element) -> None:
     field = f"joint[{name}].axis"
-    values = _triple(field, "1 0 0" if axis is None else axis.get("xyz", "1 0 0"))
-    if abs(math.hypot(*values) - 1) > 1e-6:
+    if abs(math.hypot(*_triple(field, axis_of(joint))) - 1) > 1e-6:
         raise InputError(None, field, "must have length 1")
 
 

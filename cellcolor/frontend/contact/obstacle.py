@@ -75,10 +75,6 @@ class Primitive(Obstacle):
         """The shape for fcl."""
 
     @abstractmethod
-    def _extents(self) -> tuple[float, float, float]:
-        """Sizes along its own x, y and z, m."""
-
-    @abstractmethod
     def _outside(self, local: Array) -> Array:
         """How far points (k, 3) lie outside in each of j perpendicular directions, (k, j), m."""
 
@@ -102,7 +98,8 @@ class Primitive(Obstacle):
             distance = np.linalg.norm(np.maximum(self._outside(points), 0.0), axis=1)
             return distance, distance
 
-        return Solid(self._shape(), sorted(self._extents())[1], distances).placed(self)
+        _, width, _ = sorted(np.ptp(self._mesh().vertices, axis=0).tolist())
+        return Solid(self._shape(), width, distances).placed(self)
 
 
 class BoxObstacle(Primitive):
@@ -113,9 +110,6 @@ class BoxObstacle(Primitive):
 
     def _shape(self) -> fcl.CollisionGeometry:
         return fcl.Box(*self.size_m)
-
-    def _extents(self) -> tuple[float, float, float]:
-        return self.size_m
 
     def _outside(self, local: Array) -> Array:
         return np.asarray(np.abs(local) - np.array(self.size_m) / 2)
@@ -133,9 +127,6 @@ class CylinderObstacle(Primitive):
 
     def _shape(self) -> fcl.CollisionGeometry:
         return fcl.Cylinder(self.radius_m, self.height_m)
-
-    def _extents(self) -> tuple[float, float, float]:
-        return (2 * self.radius_m, 2 * self.radius_m, self.height_m)
 
     def _outside(self, local: Array) -> Array:
         across = np.hypot(local[:, 0], local[:, 1]) - self.radius_m
@@ -156,9 +147,6 @@ class SphereObstacle(Primitive):
     def _shape(self) -> fcl.CollisionGeometry:
         return fcl.Sphere(self.radius_m)
 
-    def _extents(self) -> tuple[float, float, float]:
-        return (2 * self.radius_m,) * 3
-
     def _outside(self, local: Array) -> Array:
         return np.asarray(np.linalg.norm(local, axis=1)[:, None] - self.radius_m)
 
@@ -175,9 +163,6 @@ class CapsuleObstacle(Primitive):
 
     def _shape(self) -> fcl.CollisionGeometry:
         return fcl.Capsule(self.radius_m, self.axis_m)
-
-    def _extents(self) -> tuple[float, float, float]:
-        return (2 * self.radius_m, 2 * self.radius_m, self.axis_m + 2 * self.radius_m)
 
     def _outside(self, local: Array) -> Array:
         off = local.copy()
@@ -200,9 +185,6 @@ class ConeObstacle(Primitive):
 
     def _shape(self) -> fcl.CollisionGeometry:
         return fcl.Cone(self.radius_m, self.height_m)
-
-    def _extents(self) -> tuple[float, float, float]:
-        return (2 * self.radius_m, 2 * self.radius_m, self.height_m)
 
     def _outside(self, local: Array) -> Array:
         """Distances (k, 1) from the triangle that turns about the axis, 0 inside."""

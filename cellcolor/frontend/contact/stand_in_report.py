@@ -10,6 +10,7 @@ import trimesh
 from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Mask, unit
+from cellcolor.data.wording import count
 from cellcolor.frontend.arm.body import Body, StandIn
 from cellcolor.frontend.arm.polyhedron import longest_side_first
 from cellcolor.frontend.contact.collision import segment_distance
@@ -63,8 +64,7 @@ class StandInReport:
         if self.chosen == "exact":
             open_ = "" if self.closed else "; it is open: what is all inside it goes unnoticed"
             return f"{self.link!r}: {self.file}, as it is{open_}"
-        what = "convex hull" if self.chosen == "hull" else f"{self.shapes} capsules"
-        what = "1 capsule" if what == "1 capsules" else what
+        what = "convex hull" if self.chosen == "hull" else count(self.shapes, "capsule")
         inside = "contains it" if self.contains else "does not contain all of it"
         error, known = (math.ceil(1e4 * value) / 10 for value in (self.error_m, self.known_to_m))
         return (

@@ -1,16 +1,9 @@
 """Colors that keep the joint limits by themselves (``docs/frontend/continuity.md``, "Turns").
 
-Inverse kinematics has angles only up to full circles, and so have colors modulo full circles. What
-an arm really has is a position of each joint inside its limits. Vertices with such positions are
-the nodes here. The links of a color lead from one node to another, and the components of nodes are
-the colors that keep the limits. Usually one of them is the whole color. A segment of a color that
-keeps the limits needs no lift-off for them.
-
-A component may come back to a vertex turned by a full circle, as around the robot's base. If the
-joint has two full circles, the color stays whole: wherever a segment begins to count, once around
-fits in. Otherwise a part of the component, a window of one full circle, gives each vertex one
-position. Where neighbors disagree there is a crack. The lowest, the middle and the highest window
-become colors.
+Nodes are vertices with a position of each joint inside its limits, and the components of linked
+nodes are the colors. Of a component that comes back to a vertex turned by a full circle, a window
+of one circle gives each vertex one position, and where neighbors disagree there is a crack. If the
+joint has two full circles, once around fits in wherever a segment begins: the color stays whole.
 """
 
 from __future__ import annotations

@@ -164,11 +164,7 @@ def prepare_arm(setup: Setup) -> PreparedArm:
 
 
 def _family(setup: Setup) -> type[InverseKinematics]:
-    """The family of arms that a setup names.
-
-    Raises:
-        InputError: there is no such family, or it cannot be imported.
-    """
+    """The family of arms that a setup names."""
     try:
         return KINEMATICS.find(setup.robot.kinematics)
     except InputError as error:
@@ -176,11 +172,7 @@ def _family(setup: Setup) -> type[InverseKinematics]:
 
 
 def _kinematics(setup: Setup, robot: Robot) -> InverseKinematics:
-    """The arm's inverse kinematics for the task of its setup.
-
-    Raises:
-        InputError: the arm is not of the family that the setup names.
-    """
+    """The arm's inverse kinematics for the task of its setup."""
     family, turn = _family(setup), setup.task.turn
     kinematics = (
         family(robot, setup.robot)
@@ -260,11 +252,7 @@ def _task(setup: Setup, family: type[InverseKinematics]) -> TaskSpace:
 
 
 def _check_last_joint(robot: Robot) -> None:
-    """Refuse a joint that only turns the tool where its turn is free, and no joint is locked.
-
-    Raises:
-        InputError: the arm is redundant.
-    """
+    """Refuse a joint that only turns the tool where its turn is free, and no joint is locked."""
     task = robot.task
     turns_tool = task.most_joints > task.joints >= robot.joints
     if turns_tool and not robot.slides[-1] and is_tool_on_last_axis(pose_at_zero(robot)):

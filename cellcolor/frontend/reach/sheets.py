@@ -1,12 +1,9 @@
 """Solutions without names, put into sheets, which then are the branches of the arm.
 
-A sheet has at most one solution of each vertex of the surface, and what is linked along mesh edges
-is in one sheet. So a sheet means the same at neighboring vertices, as a named branch does. Between
-the vertices, and off the surface, a sheet is followed from the nearest vertex where it is valid
-(:class:`SheetKinematics`). Everything that comes after takes a sheet for a branch.
-
-In standard terms, solutions are the points of a covering of the part, links are lifts of mesh edges
-by continuation (path tracking), and a sheet is a sheet of the covering, or several pieces of one.
+What a sheet means at vertices, between and off them: ``docs/frontend/continuity.md``, "Continuity
+without names". In standard terms, solutions are the points of a covering of the part, links are
+lifts of mesh edges by continuation (path tracking), and a sheet is a sheet of the covering, or
+several pieces of one.
 
 1. :class:`Linking` compares all solutions at both ends of a mesh edge. A pair is linked at once if
    the step between them is small and clearly the nearest. What is left over at both ends is
@@ -17,11 +14,6 @@ by continuation (path tracking), and a sheet is a sheet of the covering, or seve
    fit, as in greedy coloring of a graph. Two that share a vertex, or have vertices next to each
    other, are in different sheets.
 4. Solutions that are not valid fill free places, so that each has a reason somewhere.
-
-Example. Vertices 0, 1 and 2 are a triangle, each with solutions a and b. The links 0a-1b and 1b-2a
-make a component; 0b, 1a and 2b are linked to nothing. Sheet 1 has the component, with a of vertex
-0, b of vertex 1 and a of vertex 2. As 0b, 1a and 2b are next to each other, each of them has a
-sheet of its own: sheets 2, 3 and 4.
 
 For k edges and s solutions of a vertex there are O(k s^2) comparisons, edges in batches that fit
 into memory, and the steps of what is followed. Packing c components into t sheets looks at each

