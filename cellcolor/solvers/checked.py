@@ -72,9 +72,16 @@ def check_able_to_list(name: str, instance: Instance) -> None:
         InputError: there is no such solver, or a cell has several live loops and that is more
             than it is able to do.
     """
-    able = make_solver(name).abilities
-    if not able.schemes_of_several_loops:
-        _check_loops(name, instance, "lists optimal schemes")
+    if make_solver(name).abilities.schemes_of_several_loops:
+        return
+    for cell, loops in enumerate(instance.live_loops):
+        if len(loops) > 1:
+            raise InputError(
+                None,
+                f"cells[{cell}].loops",
+                f"the solver {name} lists optimal schemes with one live loop only, "
+                f"this one has {len(loops)}",
+            )
 
 
 def solve(
@@ -83,15 +90,7 @@ def solve(
     solver: str = DEFAULT,
     progress: OnProgress | None = None,
 ) -> Solution:
-    """Color an instance with the fewest segments, or those that cost least.
-
-    Args:
-        options: search space, limits, seed, objective.
-        solver: a name that the registry has.
-        progress: called with the best so far and the lower bound.
-
-    Returns:
-        The solution, checked against the instance.
+    """Color an instance with the fewest segments, or those that cost least; the checker sees it.
 
     Raises:
         InputError: there is no such solver, or it is not able to do what is asked; there are too
@@ -156,6 +155,9 @@ def solution_of(
         status = "unknown"
     elif value == proved[0] or (options.search_space == "paper" and value == proved[1]):
         status = "optimal"
+    cuts = None
+    if answer.cutting_paths_lower_bound is not None and answer.division is not None:
+        cuts = cutting_paths(instance, answer.division, answer.seams)
     return Solution(
         instance=InstanceReference(instance.name, instance.sha256),
         search_space=options.search_space,
@@ -170,7 +172,7 @@ def solution_of(
         seams=answer.seams,
         cells=answer.division,
         seconds=seconds,
-        cutting_paths=None if answer.cutting_paths_lower_bound is None else _cuts(instance, answer),
+        cutting_paths=cuts,
         cutting_paths_lower_bound=answer.cutting_paths_lower_bound,
         bounds=bounds,
         coverage=instance.coverage,
@@ -192,7 +194,6 @@ def enumerate_schemes(
 
     Args:
         options: time limit and seed; the search space is ``paper``.
-        solver: a name that the registry has.
         segments: the minimum.
         known: a division to start from, for solvers that can.
         counted: told how many schemes there are as soon as the solver knows that.
@@ -228,16 +229,6 @@ def enumerate_schemes(
         raise RefusedResult(f"{solver} found no scheme with {segments} segments, the minimum")
 
 
-def _check_loops(name: str, instance: Instance, does: str) -> None:
-    for cell, loops in enumerate(instance.live_loops):
-        if len(loops) > 1:
-            raise InputError(
-                None,
-                f"cells[{cell}].loops",
-                f"the solver {name} {does} with one live loop only, this one has {len(loops)}",
-            )
-
-
 def _needed(bounds: tuple[Bound, ...], of: Bounded) -> tuple[Bound, ...]:
     """The bounds of one thing without those that an earlier or a more general one makes pointless.
 
@@ -268,12 +259,6 @@ def _certified(
     regions = regions_of_cells(instance)
     verdict = verify_bound(instance, bound, regions, FEW_STEPS, deadline, costs)
     return bound if verdict.outcome == "verified" else replace(bound, certificate=None)
-
-
-def _cuts(instance: Instance, answer: Answer) -> int | None:
-    if answer.division is None:
-        return None
-    return cutting_paths(instance, answer.division, answer.seams)
 
 
 def _insist(report: Report, solver: str) -> None:

@@ -17,12 +17,9 @@ POOL = 1000
 def pool_of(schemes: Iterator[Division], number: int = POOL) -> Iterator[Division]:
     """Up to so many different schemes: drawn at random where the solver has counted them.
 
-    Args:
-        schemes: what a solver lists. If it has the attributes ``count`` and ``drawn`` of
-            :class:`~cellcolor.solvers.cpsat.schemes.enumeration.OptimalSchemes` and there are more
-            than ``number``, all but the first ones are drawn; else these are the first ones, which
-            may be much alike.
-        number: of schemes.
+    If what the solver lists has the attributes ``count`` and ``drawn`` of
+    :class:`~cellcolor.solvers.cpsat.schemes.enumeration.OptimalSchemes` and there are more than
+    ``number``, all but the first ones are drawn. Else these are the first ones, much alike perhaps.
     """
     seen = set()
     for division in schemes:
@@ -48,13 +45,9 @@ def most_different(instance: Instance, schemes: Sequence[Division], number: int)
     Two schemes differ by the area of the cells that they paint in other colors. In a divided cell
     each dart stands for an equal part of the cell; where areas are unknown, cells count alike.
 
-    Args:
-        schemes: of it, at least one.
-        number: how many are wanted; fewer if there are no more different ones.
-
-    Returns:
-        The chosen ones in the order of choice (Gonzalez' farthest-point selection). The least
-        difference between two of them is at least half of what it is in any other choice.
+    They come in the order of choice (Gonzalez' farthest-point selection), fewer if there are no
+    more different ones. The least difference between two of them is at least half of what it is in
+    any other choice.
     """
     painted = np.array([_colors(instance, division) for division in schemes])
     weights = _weights(instance)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import combinations
 
 import pytest
+from conflicts import conflicts
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import INSTANCES
@@ -17,7 +18,6 @@ from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, hub, planar_graph
 from cellcolor.lab.families.hubs import hub_with_loops
-from cellcolor.solvers.bounds.conflicts import conflicts
 from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_cover
 from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
 from cellcolor.solvers.checked import solve

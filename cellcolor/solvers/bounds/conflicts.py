@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations, product
 
 from cellcolor.data.instance import Instance
 from cellcolor.solvers.bounds.cover import Region
@@ -20,7 +19,6 @@ from cellcolor.union_find import UnionFind
 
 MergedCell = frozenset[int]
 """The cells that a merged cell consists of; a segment touches it where it touches one of them."""
-
 
 MOST_CIRCLES = 6
 """More independent closed curves than that (three handles have six) leave nothing to be concluded:
@@ -44,50 +42,11 @@ class Parting:
     groups: tuple[tuple[MergedCell, ...], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Conflict:
-    """What two segments cannot do side by side.
-
-    A segment in the first region that touches both merged cells ``one``, and a segment in the
-    second that touches both merged cells ``other``, would cross each other, however often cutting
-    paths cross the edges.
-
-    Attributes:
-        one: two merged cells that belong to the first region and not to the second.
-        other: two merged cells that belong to the second region and not to the first.
-    """
-
-    one: tuple[MergedCell, MergedCell]
-    other: tuple[MergedCell, MergedCell]
-
-
-def conflicts(instance: Instance, first: Region, second: Region) -> list[Conflict]:
-    """All known conflicts between segments in two color regions.
-
-    All returned conflicts are true, but there may be more.
-    """
-    found: dict[frozenset[frozenset[MergedCell]], Conflict] = {}
-    pair = RegionPair(instance, first, second)
-    for side in (pair.first, pair.second):
-        for near, far in combinations(side.merged_cells, 2):
-            for parting in side.partings(near, far):
-                for group, further in combinations(parting.groups, 2):
-                    for merged_cells in product(group, further):
-                        sides = (parting.ends, merged_cells)
-                        conflict = Conflict(*(sides if side is pair.first else sides[::-1]))
-                        found[frozenset(map(frozenset, sides))] = conflict
-    return list(found.values())
-
-
 class RegionPair:
     """The surface for two color regions: merged cells with one color, the other or both.
 
     Cells of both colors are merged as far as both colors continue. So, apart from cracks, edges
     remain only between merged cells of one color and merged cells of both.
-
-    Args:
-        first: a color region.
-        second: another one.
 
     Attributes:
         first: what segments of the first region do to those of the second.
@@ -160,13 +119,8 @@ class Side:
     def partings(self, near: int, far: int) -> list[Parting]:
         """The partings of the other region by a segment that touches two merged cells of its own.
 
-        Args:
-            near: a merged cell of the one region alone.
-            far: another one.
-
-        Returns:
-            One for each component of the wall (docs/bounds.md, "Conflicts") of whose merged cells
-            some are parted.
+        There is one for each component of the wall (docs/bounds.md, "Conflicts") of whose merged
+        cells some are parted.
         """
         if not self._wall or not {near, far} <= self._tree.keys():
             return []
@@ -241,22 +195,15 @@ class Side:
         Ways of the other region are followed, with the parity of their crossings with the chosen
         curves of the one region; merged cells of the wall may be passed in even parity only.
         """
-        parent = list(range(2 * len(self._number)))
-
-        def root(node: int) -> int:
-            while parent[node] != node:
-                parent[node] = parent[parent[node]]
-                node = parent[node]
-            return node
-
+        connected = UnionFind(range(2 * len(self._number)))
         for edge, left, right in self._ways:
             turn = (turns[edge] & chosen).bit_count() % 2
             for parity in (0, 1):
                 across = parity ^ turn
                 if (parity and left in wall) or (across and right in wall):
                     continue
-                parent[root(2 * left + parity)] = root(2 * right + across)
-        return [root(node) for node in range(len(parent))]
+                connected.union(2 * left + parity, 2 * right + across)
+        return [connected[node] for node in range(2 * len(self._number))]
 
     def _components(
         self, parted: list[int], other: set[int]

@@ -50,11 +50,10 @@ def color_regions(
 
     No segment reaches beyond one of these (docs/semantics.md, section 4).
 
+    They come by color, those of one color by their smallest cell.
+
     Args:
         colors: the colors each cell may be painted in, if not all of its own.
-
-    Returns:
-        The regions by color, those of one color by their smallest cell.
     """
     allowed = colors or [frozenset(cell.colors) for cell in instance.cells]
     near: list[dict[int, list[int]]] = [{color: [] for color in own} for own in allowed]
@@ -88,19 +87,13 @@ def set_cover(
 ) -> Cover:
     """A smallest set of color regions that touches every cell; its size is a lower bound.
 
-    With costs it is a cheapest one, and what it costs is a lower bound of the cost of segments.
-
-    Every cell of a division contains a sub-cell, which belongs to a segment, which lies within
-    one color region. So the regions of all segments together touch every cell, and there are at
-    least as many segments as regions in a smallest cover. This holds in both search spaces.
+    The regions of all segments together touch every cell, in both search spaces. After the deadline
+    it is the best cover and bound so far.
 
     Args:
         colors: the colors each cell may be painted in, if not all of its own.
-        deadline: when to stop with the best cover and bound so far.
-        costs: what a segment of each color costs; None for 1 each.
-
-    Raises:
-        KeyboardInterrupt: Ctrl-C.
+        costs: what a segment of each color costs; None for 1 each. With costs it is a cheapest set,
+            and what it costs is a lower bound of the cost of segments.
     """
     regions = color_regions(instance, colors)
     touching = _touching(regions, len(instance.cells))
@@ -197,11 +190,7 @@ def _strangers(group: Sequence[int], touching: Sequence[set[int]], deadline: Dea
 
 
 def greedy_strangers(instance: Instance, without: Collection[int] = ()) -> list[int]:
-    """Cells of which no two lie in one color region, found quickly but not always the most.
-
-    Args:
-        without: cells to remove first.
-    """
+    """Cells of which no two lie in one color region without some others; not always the most."""
     colors = [frozenset(() if c.id in without else c.colors) for c in instance.cells]
     touching = _touching(color_regions(instance, colors), len(instance.cells))
     return _apart((c for c in range(len(touching)) if c not in without), touching)
@@ -302,11 +291,7 @@ def _solve(
     effort: float,
     deadline: Deadline,
 ) -> _Found:
-    """Solve a small model as far as there is time and effort for it.
-
-    Raises:
-        KeyboardInterrupt: Ctrl-C.
-    """
+    """Solve a small model as far as there is time and effort for it."""
     from ortools.sat.python import cp_model
 
     from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly

@@ -15,7 +15,7 @@ class Domain:
     """Where a segment can be: merged cells that its color connects.
 
     Attributes:
-        id: identifies the domain on its surface.
+        id: of the domain on its surface.
         tree: by which edge each merged cell of the domain is first reached, and from which one.
         number: of each of these merged cells, from 0.
         wall: for each other merged cell, its component outside the domain.
@@ -26,10 +26,6 @@ class Domain:
     number: Mapping[int, int]
     wall: Mapping[int, int]
 
-    def apart(self, other: Domain) -> bool:
-        """Whether two domains have no merged cell in common."""
-        return self.number.keys().isdisjoint(other.number)
-
 
 class Domains:
     """The domains of segments on one surface, and how often ways within them cross.
@@ -37,9 +33,6 @@ class Domains:
     Args:
         merged: its cells, merged where nothing separates them in the colors of the regions.
         regions: some color regions by their numbers, each as its color and its merged cells.
-
-    Attributes:
-        surface: the merged cells as polygons.
     """
 
     def __init__(self, merged: MergedCells, regions: Mapping[int, Region]) -> None:
@@ -50,13 +43,7 @@ class Domains:
         self._odd: dict[tuple[int, int], dict[int, int]] = {}
 
     def domain(self, region: int, avoided: frozenset[int], start: int) -> Domain:
-        """Where a segment can be.
-
-        Args:
-            region: the number of its color region.
-            avoided: merged cells that it does not touch.
-            start: one that it touches.
-        """
+        """Where a segment can be that touches a merged cell of its region and not some others."""
         if (region, avoided) not in self._connected:
             self._connected[region, avoided] = self._components(region, avoided)
         connected = self._connected[region, avoided]

@@ -69,14 +69,7 @@ def best_grouping(
         apart: a dart that must not be in one group with the first one.
     """
     count = len(colors)
-    tables = _Tables(
-        np.zeros((count + 1, count + 1), dtype=np.int64),
-        {},
-        {
-            color: [dart for dart, own in enumerate(colors) if color in own]
-            for color in frozenset[int]().union(*colors)
-        },
-    )
+    tables = _Tables(colors)
     for one in reversed(range(count)):
         deadline.check()
         tables.best[one] = tables.best[one + 1]
@@ -87,10 +80,9 @@ def best_grouping(
                 tables.add_links(one, color, None)
             found = tables.linked[one, color, None if one else apart]
             np.maximum(tables.best[one], found, out=tables.best[one])
-    return Grouping(tuple(tables.groups(colors, apart)))
+    return Grouping(tuple(tables.groups(apart)))
 
 
-@dataclass(frozen=True, slots=True)
 class _Tables:
     """What the recursion has found.
 
@@ -98,27 +90,32 @@ class _Tables:
         best: the most links of the darts from one to another.
         linked: the same for each end if the first dart is in a group of some color; the third key
             is a dart that is not to be in that group, or None.
-        darts: those that can be joined in each color.
     """
 
-    best: Index
-    linked: dict[tuple[int, int, int | None], Index]
-    darts: dict[int, list[int]]
+    def __init__(self, colors: Sequence[frozenset[int]]) -> None:
+        size = len(colors) + 1
+        self.best: Index = np.zeros((size, size), dtype=np.int64)
+        self.linked: dict[tuple[int, int, int | None], Index] = {}
+        self._colors = colors
+        self._darts = {
+            color: [dart for dart, own in enumerate(colors) if color in own]
+            for color in frozenset[int]().union(*colors)
+        }
 
     def add_links(self, one: int, color: int, apart: int | None) -> None:
         """Fill in a row of ``linked``."""
         below = self.best[one + 1]
         found = below.copy()
-        for other in self.darts[color]:
+        for other in self._darts[color]:
             if one < other != apart:
                 further = below[other] + 1 + self.linked[other, color, apart][other + 1 :]
                 np.maximum(found[other + 1 :], further, out=found[other + 1 :])
         self.linked[one, color, apart] = found
 
-    def groups(self, colors: Sequence[frozenset[int]], apart: int | None) -> list[Group]:
+    def groups(self, apart: int | None) -> list[Group]:
         """Read the groups off the tables."""
         groups = []
-        waiting = [(0, len(colors))]
+        waiting = [(0, len(self._colors))]
         while waiting:
             first, end = waiting.pop()
             if first >= end:
@@ -126,7 +123,7 @@ class _Tables:
             without = None if first else apart
             color = next(
                 color
-                for color in sorted(colors[first])
+                for color in sorted(self._colors[first])
                 if self.linked[first, color, without][end] == self.best[first, end]
             )
             darts = [first]
@@ -140,7 +137,7 @@ class _Tables:
     def _following(self, last: int, color: int, apart: int | None, end: int) -> int | None:
         """The next dart of a group, None after its last one."""
         links = self.linked[last, color, apart][end]
-        for other in self.darts[color]:
+        for other in self._darts[color]:
             if last < other < end and other != apart:
                 further = self.linked[other, color, apart][end]
                 if links == self.best[last + 1, other] + 1 + further:
@@ -251,11 +248,7 @@ class HubBound:
 
 
 def hub_bound(instance: Instance, deadline: Deadline = NEVER) -> HubBound:
-    """The best bound from hubs chosen one after the other.
-
-    Args:
-        deadline: when to stop with the hubs found so far.
-    """
+    """The best bound from hubs chosen one after the other, those found before the deadline."""
     found = HubBound(0, cells=tuple(greedy_strangers(instance)))
     links, fewest = 0, len(found.cells)
     darts = [sum(map(len, loops)) for loops in instance.live_loops]

@@ -64,7 +64,6 @@ def merge_further(
     """Merge what has been merged further, for the sake of fewer colors.
 
     Args:
-        merged: the cells, under names of their own.
         colors: of each cell that is looked at, the colors that matter.
         apart: cells with different values here are not merged.
     """
@@ -122,7 +121,6 @@ class _Rings:
         self._before: dict[int, int] = {}
 
     def add(self, loop: list[int]) -> None:
-        """One more loop."""
         for dart, following in zip(loop, loop[1:] + loop[:1], strict=True):
             self._link(dart, following)
 
@@ -144,7 +142,6 @@ class _Rings:
             del self._next[dart], self._before[dart]
 
     def loops(self) -> list[list[int]]:
-        """What is left of the loops."""
         found = []
         seen: set[int] = set()
         for first in self._next:
@@ -193,14 +190,11 @@ class PolygonSurface:
         self.before = {following: dart for dart, following in self.following.items()}
         self._borders: UnionFind[int] = UnionFind(self.following)
         for dart in self.following:
+            # Where a dart ends, the border continues to what lies before the dart's other side.
             self._borders.union(dart, self.before[-dart])
 
     def borders(self) -> UnionFind[int]:
-        """The border curves, each as the darts after which it runs.
-
-        At the corner where a dart ends, the border continues to what lies before the dart's
-        other side.
-        """
+        """The border curves, each as the darts after which it runs."""
         return self._borders.copy()
 
     @property
@@ -240,10 +234,7 @@ class PolygonSurface:
 
         A curve is homologous to zero (modulo 2, borders filled with discs) if every closed curve
         crosses it an even number of times. It is enough to test the fundamental cycles of the graph
-        of polygons.
-
-        Args:
-            turns: the curves between polygons, see above.
+        of polygons. The curves are given by their :meth:`turns`.
         """
         tree = spanning_tree(self.sides, self.polygons)
         passed: dict[int, int] = {}

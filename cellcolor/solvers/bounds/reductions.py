@@ -13,13 +13,7 @@ from cellcolor.solvers.bounds.cover import color_regions
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """A color region that is dropped, because another color can replace it.
-
-    Attributes:
-        color: the region's color.
-        cells: the region's cells.
-        stand_in: the other color.
-    """
+    """A color region that is dropped, because another color, ``stand_in``, can replace it."""
 
     color: int
     cells: frozenset[int]
@@ -77,10 +71,7 @@ def left_out(
     return found
 
 
-def enough_crossings(
-    instance: Instance,
-    colors: Sequence[frozenset[int]],
-) -> dict[int, float]:
+def enough_crossings(instance: Instance, colors: Sequence[frozenset[int]]) -> dict[int, float]:
     """How many strands of each live edge suffice for a minimum over all divisions.
 
     Among all divisions of the surface with the fewest segments, take one with the fewest
@@ -95,11 +86,10 @@ def enough_crossings(
     The second point is applied until nothing changes. It says nothing about a side whose cell has
     several live loops, nor about edges with the same cell on both sides.
 
+    A number for every live edge, infinity if no limit is known.
+
     Args:
         colors: the colors each cell may be painted in, all or some of its own.
-
-    Returns:
-        A number for every live edge; infinity if no limit is known.
     """
     enough = {
         edge.id: math.inf

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
+from math import prod
 
 from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.cover import Region
@@ -94,11 +95,7 @@ class _Surface:
         plan: the segments.
         apart: cells with different values here are not merged.
 
-    Attributes:
-        merged: the cells merged.
-        parts: what each of them consists of.
-        regions: the color regions of the segments, in merged cells.
-        plan: the segments in merged cells.
+    Attributes are the same after merging.
     """
 
     def __init__(
@@ -138,7 +135,7 @@ class _Surface:
         self._on_a_sphere = self._domains.surface.is_spheres
 
     def seen_by(self, plan: Sequence[Touching], apart: Mapping[int, Hashable]) -> _Surface:
-        """The same as fewer segments see it, whose plan is in merged cells."""
+        """The same as fewer segments see it."""
         return _Surface(self.merged, self.parts, self.regions, plan, apart)
 
     def in_parts(self, plan: Sequence[Touching]) -> list[Touching]:
@@ -192,7 +189,7 @@ class _Surface:
         """Sides whose sum is known, each of a segment's way to a merged cell and of a wall."""
         for one, two in combinations(range(len(plan)), 2):
             own, its = domains[one], domains[two]
-            if own.apart(its):
+            if own.number.keys().isdisjoint(its.number):
                 continue
             near = [cell for cell in plan[one].cells if cell in its.wall]
             far = [cell for cell in plan[two].cells if cell in own.wall]
@@ -213,7 +210,6 @@ class _Surface:
         At first a merged cell goes from what one segment touches and from what others avoid at
         once, since most that is avoided is so for the sake of the segment that touches it.
         """
-
         plan = self.plan
 
         def tangled(touched: _Places, avoided: _Places) -> bool:
@@ -268,9 +264,7 @@ class _Surface:
         self, groups: Sequence[Sequence[Sequence[int]]], deadline: Deadline
     ) -> bool:
         """Whether no choice of a merged cell of each group can be drawn."""
-        count = 1
-        for group in (group for segment in groups for group in segment):
-            count *= len(group)
+        count = prod(len(group) for segment in groups for group in segment)
         return count <= MOST_CHOICES and not any(
             self.can_be_drawn(
                 [

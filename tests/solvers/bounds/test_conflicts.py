@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from itertools import combinations, product
 
 import networkx as nx
+from conflicts import conflicts
 from hypothesis import given, reject
 from hypothesis import strategies as st
 from library import PAPER
@@ -17,7 +18,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
-from cellcolor.solvers.bounds.conflicts import MergedCell, conflicts
+from cellcolor.solvers.bounds.conflicts import MergedCell
 from cellcolor.solvers.bounds.cover import color_regions, set_cover
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
