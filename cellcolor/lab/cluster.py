@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future
-from types import TracebackType
 
 from distributed import Client, Worker, get_worker
 
@@ -49,19 +48,13 @@ class ClusterWorkers(Workers):
         future: Future[Ended] = self._executor.submit(_work, task)
         return future
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """End what is still being done, and leave the cluster."""
         self._executor.shutdown(wait=False)
         self._client.close()
 
 
 def _work(task: Task) -> Ended:
-    """What a worker does."""
     return run_alone(task.function, task.arguments, task.limits, _dropped(get_worker()))
 
 

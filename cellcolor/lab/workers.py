@@ -11,7 +11,6 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from itertools import islice
 from threading import Event
-from types import TracebackType
 from typing import Any, Protocol, TypeVar
 
 from cellcolor.errors import CellcolorError
@@ -52,13 +51,10 @@ class Workers(AbstractContextManager["Workers"], Protocol):
 def as_they_end(
     workers: Workers, tasks: Iterable[tuple[_Name, Task]]
 ) -> Iterator[tuple[_Name, Ended]]:
-    """What came of each task, in the order in which they end.
+    """What came of each task, by its name of any kind, in the order in which they end.
 
     A task is taken only when a worker is free for it, so that making the next one, which may take
     a while, does not disturb the work where there is one worker.
-
-    Args:
-        tasks: each with a name of any kind, which is handed back with the result.
     """
     left = iter(tasks)
     names: dict[Future[Ended], _Name] = {}
@@ -82,11 +78,7 @@ def _ended(future: Future[Ended]) -> Ended:
 
 
 class LocalWorkers(Workers):
-    """Each piece of work in a process of its own on this machine, watched by a thread.
-
-    Args:
-        jobs: pieces of work at a time.
-    """
+    """So many pieces of work at a time on this machine, each watched by a thread."""
 
     def __init__(self, jobs: int) -> None:
         self._jobs = jobs
@@ -101,12 +93,7 @@ class LocalWorkers(Workers):
         work = (task.function, task.arguments, task.limits, self._stop.is_set)
         return self._watchers.submit(run_alone, *work)
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """End what is still being done, at once."""
         self._stop.set()
         self._watchers.shutdown(cancel_futures=True)

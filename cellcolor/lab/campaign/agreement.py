@@ -53,22 +53,16 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class MeshFinding:
-    """What a search over the vertices of the mesh says about the search space ``surface``.
+    """What a search over the vertices of the mesh says about the search space ``surface``."""
 
-    Attributes:
-        by_vertices: the fewest segments over all colorings of the vertices.
-        segments: of the best division of the surface.
-    """
-
-    by_vertices: int
-    segments: int
+    by_vertices: int  # the fewest segments over all colorings of the vertices
+    segments: int  # of the best division of the surface
 
 
 def compare_solvers(instance: Instance, time_limit: float) -> Finding:
     """Every solver's minimum and, where it is defined, set of optimal schemes.
 
-    Args:
-        time_limit: seconds for each solve and for each set of schemes.
+    Each solve and each set of schemes has ``time_limit`` seconds.
 
     Raises:
         Disagreement: they do not agree.
@@ -107,14 +101,9 @@ def compare_solvers(instance: Instance, time_limit: float) -> Finding:
 def compare_on_mesh(
     surface: LabelledSurface, instance: Instance, time_limit: float
 ) -> MeshFinding | None:
-    """CP-SAT in the search space ``surface`` against all colorings of the mesh's vertices.
+    """CP-SAT in the search space ``surface`` against all colorings of a small mesh's vertices.
 
-    Args:
-        surface: a small mesh.
-        time_limit: seconds for each solve.
-
-    Returns:
-        Both numbers; None when the mesh is too large for a search over vertices or time ran out.
+    None when the mesh is too large for a search over vertices, or the seconds for a solve ran out.
 
     Raises:
         Disagreement: a coloring has fewer segments than a lower bound for the surface, or fewer

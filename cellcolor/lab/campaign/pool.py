@@ -115,12 +115,8 @@ def outcomes_of_campaign(
 
     Several are looked at in one process, since its start takes longer than most of them. If it
     breaks down or has to be killed, each of its instances gets a process of its own, and what
-    breaks down there is a disagreement.
-
-    Args:
-        count: how many; the first ones are the same whatever the count.
-        time_limit: seconds for each solve.
-        workers: who looks at them.
+    breaks down there is a disagreement. The first instances are the same whatever the count.
+    ``time_limit`` is in seconds for each solve.
     """
     together = max(1, min(_TOGETHER, count // workers.slots))
     alone: list[int] = []
@@ -214,41 +210,22 @@ def _origin(case: Case, message: str) -> dict[str, Any]:
     return {"campaign": origin, "disagreement": message}
 
 
-_BINS: tuple[tuple[int, str], ...] = (
-    (1, "1"),
-    (2, "2"),
-    (4, "3-4"),
-    (6, "5-6"),
-    (9, "7-9"),
-    (16, "10-16"),
-    (99, "17-99"),
-    (999, "100-999"),
-)
+_BINS = {1: "1", 2: "2", 4: "3-4", 6: "5-6", 9: "7-9", 16: "10-16", 99: "17-99", 999: "100-999"}
+"""The ranges of values by their greatest."""
 
 
 @dataclass(slots=True)
 class Tally:
-    """Counts, of one family or of all together.
-
-    Attributes:
-        instances: looked at.
-        proved: of these, with one minimum that every solver proved.
-        scheme_sets: whose sets of optimal schemes are the same.
-        always_cut: of these, with a cutting path in every optimum.
-        meshes: compared with a search over the vertices of the mesh.
-        meshes_alike: of these, with as many segments in both.
-        disagreements: what went wrong.
-        seconds: of all processes together.
-    """
+    """Counts, of one family or of all together."""
 
     instances: int = 0
-    proved: int = 0
-    scheme_sets: int = 0
-    always_cut: int = 0
-    meshes: int = 0
-    meshes_alike: int = 0
+    proved: int = 0  # of these, with one minimum that every solver proved
+    scheme_sets: int = 0  # whose sets of optimal schemes are the same
+    always_cut: int = 0  # of these, with a cutting path in every optimum
+    meshes: int = 0  # compared with a search over the vertices of the mesh
+    meshes_alike: int = 0  # of these, with as many segments in both
     disagreements: int = 0
-    seconds: float = 0.0
+    seconds: float = 0.0  # of all processes together
 
     def add(self, outcome: Outcome) -> None:
         """Count one more."""
@@ -265,12 +242,7 @@ class Tally:
 
 @dataclass(slots=True)
 class Summary:
-    """What a campaign has looked at so far.
-
-    Attributes:
-        total: everything.
-        kinds: the same for each family.
-    """
+    """What a campaign has looked at so far, altogether and for each family."""
 
     total: Tally = field(default_factory=Tally)
     kinds: dict[str, Tally] = field(default_factory=dict)
@@ -284,26 +256,20 @@ class Summary:
 
     def histograms(self) -> dict[str, Sequence[tuple[str, int]]]:
         """How hard the instances were: per measure, instances in each range of values."""
-
-        def schemes(outcome: Outcome) -> int | None:
-            return None if outcome.finding is None else outcome.finding.schemes
-
-        def minimum(outcome: Outcome) -> int | None:
-            return None if outcome.finding is None else outcome.finding.minimum
-
-        measures: dict[str, Callable[[Outcome], int | None]] = {
-            "cells": lambda outcome: outcome.cells,
-            "most live darts of a cell": lambda outcome: outcome.darts,
-            "fewest segments": minimum,
-            "optimal schemes": schemes,
+        found = [outcome.finding for outcome in self._outcomes if outcome.finding is not None]
+        return {
+            "cells": _binned(outcome.cells for outcome in self._outcomes),
+            "most live darts of a cell": _binned(outcome.darts for outcome in self._outcomes),
+            "fewest segments": _binned(finding.minimum for finding in found),
+            "optimal schemes": _binned(finding.schemes for finding in found),
         }
-        return {name: _binned(map(of, self._outcomes)) for name, of in measures.items()}
 
 
 def _binned(values: Iterable[int | None]) -> Sequence[tuple[str, int]]:
-    names = [name for _, name in _BINS] + ["1000 and more"]
-    counts: Counter[str] = Counter()
-    for value in values:
-        if value is not None:
-            counts[next((name for most, name in _BINS if value <= most), names[-1])] += 1
-    return [(name, counts[name]) for name in names if counts[name]]
+    beyond = "1000 and more"
+    counts = Counter(
+        next((name for most, name in _BINS.items() if value <= most), beyond)
+        for value in values
+        if value is not None
+    )
+    return [(name, counts[name]) for name in (*_BINS.values(), beyond) if counts[name]]

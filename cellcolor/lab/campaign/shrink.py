@@ -21,11 +21,6 @@ def shrink_instance(
 
     Cells, edges, colors of cells and joinable colors of edges are left out one at a time, as long
     as there is time.
-
-    Args:
-        instance: one with a fault.
-        wrong: whether an instance has the fault.
-        seconds: after that, the smallest found so far is returned.
     """
     bare = replace(instance, meta=None, surface=None, known=None)
     return _shrink(bare, _smaller_instances, wrong, seconds)
@@ -71,13 +66,8 @@ def _smaller_instances(instance: Instance) -> Iterator[Instance]:
     for edge in instance.edges:
         for color in instance.joinable(edge.id):
             fewer = tuple(other for other in instance.joinable(edge.id) if other != color)
-            yield replace(
-                instance,
-                edges=tuple(
-                    replace(other, colors=fewer) if other is edge else other
-                    for other in instance.edges
-                ),
-            )
+            edges = [replace(e, colors=fewer) if e is edge else e for e in instance.edges]
+            yield replace(instance, edges=tuple(edges))
 
 
 def _without_cell(instance: Instance, gone: int) -> Instance:

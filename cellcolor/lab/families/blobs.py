@@ -31,7 +31,6 @@ def blobs(
 
     Args:
         size: points along each side of the grid, two or more.
-        colors: how many, one or more.
         waves: how many waves of a field fit across the grid, or nearly; more waves, more cells.
         coverage: the least and the largest share of the grid that a color reaches.
         thin: narrow bands instead of round blobs.

@@ -19,9 +19,7 @@ def planar_graph(
     cells share, some are dead.
 
     Args:
-        cells: how many, one or more.
         edges: between cells, at least ``cells - 1``.
-        colors: how many, one or more.
         self_edges: whether a cell may lie on both sides of an edge.
 
     Raises:

@@ -14,21 +14,22 @@ from cellcolor.data.instance import Instance, KnownResult, KnownResults
 from cellcolor.errors import InputError
 
 
+def _require(possible: bool, wanted: str) -> None:
+    if not possible:
+        raise InputError(None, None, f"no {wanted}")
+
+
 def hub(seed: int, petals: int, colors: int) -> Instance:
     """One cell with all colors, ringed by single-colored cells, no two equal neighbors.
 
     Its minimum is known (:func:`hub_minimum`) and bounds that count colors say nothing about it.
-
-    Args:
-        seed: of the petals' colors.
-        petals: how many, two or more.
-        colors: how many, two or more; three or more for an odd number of petals.
+    Two colors do not suffice for an odd number of petals.
 
     Raises:
         InputError: there is no such hub.
     """
-    if petals < 2 or colors < 2 or (petals % 2 and colors == 2):
-        raise InputError(None, None, f"no hub has {petals} petals in {colors} colors")
+    possible = petals > 1 and colors > (2 if petals % 2 else 1)
+    _require(possible, f"hub has {petals} petals in {colors} colors")
     rng = random.Random(f"hub {seed} {petals} {colors}")
     ring = _ring(rng, petals, colors)
     known = KnownResults(paper=KnownResult(hub_minimum(ring)))
@@ -36,69 +37,42 @@ def hub(seed: int, petals: int, colors: int) -> Instance:
 
 
 def hub_with_loops(seed: int, loops: int, petals: int, colors: int) -> Instance:
-    """A hub with a ring of petals round each of its several loops.
-
-    Args:
-        seed: of the petals' colors.
-        loops: how many, one or more.
-        petals: of each loop, two or more.
-        colors: how many, two or more; three or more for an odd number of petals.
+    """A hub with a ring of so many petals round each of its several loops.
 
     Raises:
         InputError: there is no such hub.
     """
-    if loops < 1 or petals < 2 or colors < 2 or (petals % 2 and colors == 2):
-        raise InputError(
-            None, None, f"no hub has {loops} loops of {petals} petals in {colors} colors"
-        )
+    possible = loops > 0 and petals > 1 and colors > (2 if petals % 2 else 1)
+    _require(possible, f"hub has {loops} loops of {petals} petals in {colors} colors")
     rng = random.Random(f"hub with loops {seed} {loops} {petals} {colors}")
     rings = [[(color,) for color in _ring(rng, petals, colors)] for _ in range(loops)]
     return _hub(f"hub_{seed}_{loops}x{petals}", rings, colors)
 
 
 def wide_hub(seed: int, petals: int, colors: int, choices: int) -> Instance:
-    """A hub whose petals have several random colors each; neighbors may share some.
-
-    Args:
-        seed: of the petals' colors.
-        petals: how many, two or more.
-        colors: how many, one or more.
-        choices: colors of each petal, at most all.
+    """A hub whose petals have so many random colors each; neighbors may share some.
 
     Raises:
         InputError: there is no such hub.
     """
-    if petals < 2 or not 1 <= choices <= colors:
-        raise InputError(
-            None, None, f"no hub has {petals} petals with {choices} of {colors} colors"
-        )
+    possible = petals > 1 and 1 <= choices <= colors
+    _require(possible, f"hub has {petals} petals with {choices} of {colors} colors")
     rng = random.Random(f"wide hub {seed} {petals} {colors} {choices}")
     ring = [tuple(sorted(rng.sample(range(colors), choices))) for _ in range(petals)]
     return _hub(f"wide_hub_{seed}_{petals}", [ring], colors)
 
 
 def cover_tree(seed: int, hubs: int, leaves: int, colors: int, choices: int = 3) -> Instance:
-    """Hubs with all colors, joined to a random tree, and leaves on them with a few colors each.
+    """Hubs with all colors, joined to a random tree, and leaves on each with ``choices`` colors.
 
     Every color is one region, so that the bound by set cover is a hitting set of all the leaves'
     random sets, which is hard to find by itself.
 
-    Args:
-        seed: of the tree and the leaves' colors.
-        hubs: how many, one or more.
-        leaves: on each hub, one or more.
-        colors: how many, one or more.
-        choices: colors of each leaf, at most all.
-
     Raises:
         InputError: there is no such tree.
     """
-    if hubs < 1 or leaves < 1 or not 1 <= choices <= colors:
-        raise InputError(
-            None,
-            None,
-            f"no tree has {hubs} hubs of {leaves} leaves with {choices} of {colors} colors",
-        )
+    possible = hubs > 0 and leaves > 0 and 1 <= choices <= colors
+    _require(possible, f"tree has {hubs} hubs of {leaves} leaves with {choices} of {colors} colors")
     rng = random.Random(f"cover tree {seed} {hubs} {leaves} {colors} {choices}")
     sets = [tuple(range(colors))] * hubs
     loops: list[list[int]] = [[] for _ in range(hubs)]
@@ -193,22 +167,11 @@ def hub_grid(seed: int, rows: int, columns: int, colors: int, side: int = 2) -> 
     two successive petals of a side are equal. What lies between four hubs is unreachable. Bounds
     that count colors say nothing here, and unlike a single hub it has no recursion for its minimum.
 
-    Args:
-        seed: of the petals' colors.
-        rows: of hubs, one or more.
-        columns: of hubs, one or more.
-        colors: how many, two or more.
-        side: petals on each side of a hub, one or more.
-
     Raises:
         InputError: there is no such grid.
     """
-    if rows < 1 or columns < 1 or colors < 2 or side < 1:
-        raise InputError(
-            None,
-            None,
-            f"no grid has {rows} x {columns} hubs, {side} petals a side, {colors} colors",
-        )
+    possible = rows > 0 and columns > 0 and colors > 1 and side > 0
+    _require(possible, f"grid has {rows} x {columns} hubs, {side} petals a side, {colors} colors")
     rng = random.Random(f"hub grid {seed} {rows} {columns} {colors} {side}")
     sets: list[tuple[int, ...]] = [tuple(range(colors))] * (rows * columns)
     loops: list[tuple[int, ...]] = [()] * (rows * columns)

@@ -43,10 +43,6 @@ def part(seed: int, cells: int = 1000, colors: int = 300) -> LabelledSurface:
     cell or two. Specks then make up the numbers: a branch comes, goes or is cut off by a ring of
     cracks within a few vertices. Large cells get many loops and a hundred darts or more.
 
-    Args:
-        cells: how many there are, some dozens or more.
-        colors: how many there are, at most half of the cells.
-
     Raises:
         InputError: too few cells or colors, or too many colors for so few cells.
     """

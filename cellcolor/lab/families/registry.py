@@ -36,9 +36,7 @@ _Recipe = Callable[[random.Random], _Made]
 def _bearable(recipe: _Recipe, seed: int, *, several_loops: bool | None = False) -> _Made:
     """The first instance of a recipe that has 2 to 10 cells, none of them with many live darts.
 
-    Args:
-        recipe: makes one after the other, of random numbers.
-        several_loops: whether some cell has to have several live loops; None if either will do.
+    Some cell has to have several live loops or none may have; if None, either will do.
     """
     rng = random.Random(f"small {seed}")
     most = MOST_CELL_DARTS_WITH_LOOPS if several_loops else MOST_CELL_DARTS
@@ -66,7 +64,7 @@ def small_hub_grid(seed: int) -> Instance:
     return hub_grid(seed, rows, columns, rng.randint(2, 4), side)
 
 
-def _graph(rng: random.Random, self_edges: bool = True) -> Instance:
+def _graph(rng: random.Random, self_edges: bool) -> Instance:
     cells = rng.randint(3, 7)
     edges = cells + rng.randint(-1, 5)
     return planar_graph(
@@ -104,27 +102,23 @@ def _loops(rng: random.Random) -> LabelledSurface:
     return _surface(rng, (7, 9), (2, 3), coverage=(0.8, 1.0), rim=rng.randint(0, 4), **extras)
 
 
-def large_voronoi(topology: Topology) -> Callable[[int], LabelledSurface]:
+def large_voronoi(topology: Topology, seed: int) -> LabelledSurface:
     """Voronoi regions on a surface of that topology."""
-
-    def make(seed: int) -> LabelledSurface:
-        rng = random.Random(f"{topology} {seed}")
-        size = rng.randint(12, 64)
-        low = rng.uniform(0.05, 0.6)
-        return voronoi(
-            seed,
-            topology,
-            size,
-            round(math.exp(rng.uniform(1.5, math.log(size**2 / 3)))),
-            rng.randint(2, 30),
-            scattered=rng.random() < 0.4,
-            coverage=(low, rng.uniform(low, 0.9)),
-            cracks=rng.randint(0, 15),
-            islands=rng.randint(0, 10),
-            holes=rng.randint(0, 4),
-        )
-
-    return make
+    rng = random.Random(f"{topology} {seed}")
+    size = rng.randint(12, 64)
+    low = rng.uniform(0.05, 0.6)
+    return voronoi(
+        seed,
+        topology,
+        size,
+        round(math.exp(rng.uniform(1.5, math.log(size**2 / 3)))),
+        rng.randint(2, 30),
+        scattered=rng.random() < 0.4,
+        coverage=(low, rng.uniform(low, 0.9)),
+        cracks=rng.randint(0, 15),
+        islands=rng.randint(0, 10),
+        holes=rng.randint(0, 4),
+    )
 
 
 def large_part(seed: int) -> LabelledSurface:
@@ -181,23 +175,8 @@ def large_patches(seed: int) -> LabelledSurface:
     )
 
 
-_COLORS = 4
-_OF_A_SIZE = 3
-"""Hubs with the same number of petals."""
-
-_GRIDS = (
-    (2, 2, 3),
-    (3, 3, 2),
-    (3, 3, 3),
-    (4, 4, 2),
-    (5, 5, 2),
-    (4, 4, 3),
-    (6, 6, 2),
-    (5, 5, 3),
-    (8, 8, 2),
-    (10, 10, 2),
-)
-"""Rows, columns, and petals at each side of a hub, from 40 to 540 cells."""
+_GRIDS = ((2, 3), (3, 2), (3, 3), (4, 2), (5, 2), (4, 3), (6, 2), (5, 3), (8, 2), (10, 2))
+"""Rows, as many as columns, and petals at each side of a hub: from 40 to 540 cells."""
 
 
 def growing_blobs(seed: int) -> LabelledSurface:
@@ -208,7 +187,7 @@ def growing_blobs(seed: int) -> LabelledSurface:
 
 def growing_hub(seed: int) -> Instance:
     """A hub of 6 petals for seeds 0 to 2, of 9 petals for the next three, …"""
-    return hub(seed, 6 + 3 * (seed // _OF_A_SIZE), _COLORS)
+    return hub(seed, 6 + 3 * (seed // 3), 4)
 
 
 def growing_hub_grid(seed: int) -> Instance:
@@ -219,7 +198,8 @@ def growing_hub_grid(seed: int) -> Instance:
     """
     if seed >= len(_GRIDS):
         raise InputError(None, None, f"grids of hubs have seeds 0 to {len(_GRIDS) - 1}")
-    return hub_grid(0, *_GRIDS[seed][:2], _COLORS, _GRIDS[seed][2])
+    rows, side = _GRIDS[seed]
+    return hub_grid(0, rows, rows, 4, side)
 
 
 Family = Callable[[int], Instance | LabelledSurface]
@@ -253,7 +233,7 @@ MEDIUM: dict[str, Family] = {
 """As hard as real scenes."""
 
 LARGE: dict[str, Family] = {
-    **{topology: large_voronoi(topology) for topology in SHAPES},
+    **{topology: partial(large_voronoi, topology) for topology in SHAPES},
     "parts": large_part,
     "loops": large_hub_with_loops,
     "petals": large_hub,

@@ -38,10 +38,8 @@ def voronoi(
     region is first divided into smaller regions.
 
     Args:
-        shape: of the surface, see :data:`cellcolor.lab.families.meshes.SHAPES`.
         size: about the square root of the number of vertices, six or more.
         regions: how many Voronoi regions, one or more, before islands, holes and cuts.
-        colors: how many, one or more.
         scattered: colors reach random regions; otherwise each grows from one region to the next.
         coverage: the least and the largest share of the regions that a color reaches.
         cracks: random paths over the mesh that the colors common to both sides do not cross.

@@ -156,10 +156,7 @@ def disagreements(rows: Iterable[Row]) -> list[str]:
 
 
 def compared(rows: Iterable[Row]) -> int:
-    """On how many instances two solvers or more have proved a minimum.
-
-    One solver with other workers is no other solver.
-    """
+    """On how many instances two solvers or more, whatever their workers, have proved a minimum."""
     return sum(
         len({row.solver for row in own if row.status == "optimal"}) > 1
         for own in _by_instance(rows)

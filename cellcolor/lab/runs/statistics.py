@@ -16,7 +16,6 @@ from cellcolor.solvers.registry import DEFAULT
 _NOISE = 0.01
 """Seconds. Shorter times are not distinguished: they would measure the clock, not the solver."""
 
-Problem = tuple[str, str, float, int]
 _K = TypeVar("_K")
 
 
@@ -47,7 +46,7 @@ def median_seconds(rows: Sequence[Row]) -> float:
 def par2(rows: Sequence[Row]) -> float:
     """The mean of the seconds, where a run that did not prove the minimum counts twice its limit.
 
-    It is a score with a penalty, the usual one of solver competitions (penalised average runtime).
+    The usual score of solver competitions (penalised average runtime).
     """
     return fmean(row.seconds or 0.0 if row.solved else 2.0 * row.limit for row in rows)
 
@@ -81,24 +80,19 @@ def strongest(rows: Sequence[Row], *, rivals: bool) -> str | None:
         rivals: among the others than ``cp-sat``, its variants left out; else among ``cp-sat`` with
             any number of workers.
     """
-    names = [
-        name
-        for name in contestants_of(rows)
+    strength = {
+        name: (sum(row.solved for row in own), -par2(own))
+        for name, own in of_contestants(rows)
         if (not _solver(name).startswith(DEFAULT) if rivals else _solver(name) == DEFAULT)
-    ]
-    own = by(rows, lambda row: row.contestant)
-
-    def strength(name: str) -> tuple[int, float]:
-        return sum(row.solved for row in own[name]), -par2(own[name])
-
-    return max(names, key=strength, default=None)
+    }
+    return max(strength, key=strength.__getitem__, default=None)
 
 
 def _solver(contestant: str) -> str:
     return contestant.partition("@")[0]
 
 
-def _problem(row: Row) -> Problem:
+def _problem(row: Row) -> tuple[str, str, float, int]:
     return row.sha256, row.search_space, row.limit, row.repetition
 
 
@@ -110,10 +104,7 @@ _FAILED = 2.0
 
 
 def plots_of(rows: Sequence[Row]) -> dict[str, Plot]:
-    """All plots by name; where there are several limits or search spaces, each has its own.
-
-    Only runs on what every solver has been tried on are drawn.
-    """
+    """All plots by name, for each limit and search space, of what every solver has tried."""
     found: dict[str, Plot] = {}
     groups = by(rows, lambda row: (row.search_space, row.limit))
     for (space, limit), own in groups.items():

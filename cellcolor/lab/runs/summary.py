@@ -23,20 +23,17 @@ _OPEN_SHOWN = 40
 
 
 def summary_of_runs(rows: Sequence[Row]) -> Iterator[str]:
-    """Lines of Markdown: who agrees, who solved what how fast, what failed, and what is open.
-
-    Args:
-        rows: of one table or several.
-    """
+    """Lines of Markdown: who agrees, who solved what how fast, what failed, and what is open."""
     yield from _about(rows)
     yield ""
     yield from _agreement(rows)
     for (space, limit), own in by(rows, lambda row: (row.search_space, row.limit)).items():
         yield from ("", f"## Search space {space}, {limit:g} s", "")
-        own, left_out = _comparable(own)
-        if left_out:
-            yield f"{count(left_out, 'run')} left out: not every solver has been tried there."
-            yield ""
+        same = common(own)
+        if same and len(same) < len(own):
+            left_out = count(len(own) - len(same), "run")
+            yield from (f"{left_out} left out: not every solver has been tried there.", "")
+        own = same or own
         yield from _by_family(own, "Minima proved, of runs", _solved)
         yield from ("", *_by_family(own, "Seconds, median", _median))
         yield from ("", *_by_family(own, "PAR2, seconds", lambda runs: _number(par2(runs))))
@@ -58,20 +55,16 @@ def summary_of_timings(timings: Sequence[Timing]) -> Iterator[str]:
             "" if size is None else str(size),
             str(len(own)),
             f"{median(one.seconds for one in own):.3f}",
-            _if_known(median(one.cpu_seconds for one in own)),
+            # Unknown, and stored as 0, for a part of a process.
+            f"{cpu:.3f}" if (cpu := median(one.cpu_seconds for one in own)) else "",
             f"{max(one.peak_mb for one in own):.0f}",
         ]
         for (subject, way, size), own in groups.items()
     ]
     yield from markdown_table([*head, "CPU seconds, median", "most MB"], body)
-    failed = [one for one in timings if one.status != "done"]
-    for one in failed:
-        yield f"\n{one.subject}, {one.way}: {one.status}."
-
-
-def _if_known(seconds: float) -> str:
-    """Processor seconds as text; empty if unknown, as for a part of a process (stored as 0)."""
-    return f"{seconds:.3f}" if seconds else ""
+    for one in timings:
+        if one.status != "done":
+            yield f"\n{one.subject}, {one.way}: {one.status}."
 
 
 def markdown_table(head: Sequence[str], body: Iterable[Sequence[str]]) -> Iterator[str]:
@@ -116,21 +109,16 @@ def _agreement(rows: Sequence[Row]) -> Iterator[str]:
     yield from (f"- {line}" for line in wrong)
 
 
-def _comparable(rows: list[Row]) -> tuple[list[Row], int]:
-    """The runs on what everybody has tried, and how many others there are; all if nothing is."""
-    same = common(rows)
-    return (same, len(rows) - len(same)) if same else (rows, 0)
-
-
 def _by_family(
     rows: Sequence[Row], title: str, cell: Callable[[Sequence[Row]], str]
 ) -> Iterator[str]:
     """A line for each family and one for all, a column for each contestant."""
     names = contestants_of(rows)
-    families = by(rows, lambda row: row.family)
-    lines = [*families.items(), ("all", list(rows))] if len(families) > 1 else [*families.items()]
+    lines = by(rows, lambda row: row.family)
+    if len(lines) > 1:
+        lines["all"] = list(rows)
     body = []
-    for family, own in lines:
+    for family, own in lines.items():
         runs = by(own, lambda row: row.contestant)
         body.append([family, *(cell(runs[name]) if name in runs else "" for name in names)])
     yield from markdown_table([title, *names], body)
@@ -185,15 +173,8 @@ def _ends(rows: Sequence[Row]) -> Iterator[str]:
                 f"{median(row.process_seconds - (row.seconds or 0) for row in own):.1f}",
             ]
         )
-    head = [
-        "solver",
-        "answers",
-        *bad,
-        "most s beyond the limit",
-        "most MB",
-        "s of start-up, median",
-    ]
-    yield from markdown_table(head, body)
+    measures = ("most s beyond the limit", "most MB", "s of start-up, median")
+    yield from markdown_table(["solver", "answers", *bad, *measures], body)
 
 
 def _open(rows: Sequence[Row]) -> Iterator[str]:

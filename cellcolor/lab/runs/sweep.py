@@ -26,13 +26,7 @@ from cellcolor.solvers.registry import solver_version
 
 @dataclass(frozen=True, slots=True)
 class Contestant:
-    """A solver that takes part.
-
-    Attributes:
-        solver: its registered name.
-        workers: the number to use, None if it chooses itself.
-        version: what answers.
-    """
+    """A solver that takes part, by its registered name; it chooses its workers itself if None."""
 
     solver: str
     workers: int | None
@@ -124,16 +118,7 @@ _WARM_UP = Instance("warm-up", ("any",), (Cell(0, (0,), ()),), ())
 
 @dataclass(frozen=True, slots=True)
 class Answered:
-    """What a solver answered.
-
-    Attributes:
-        status: how the run ended.
-        segments: of the best division, None without one.
-        lower_bound: that was proved in the search space, None without an answer.
-        proved_for_surface: whether the minimum is proved for any division of the surface.
-        seconds: of solving.
-        error: a line, None if nothing went wrong.
-    """
+    """What a solver answered; see :class:`Row`."""
 
     status: Status
     segments: int | None = None
@@ -203,13 +188,12 @@ class Experiment:
 class Sweep:
     """The runs of a plan.
 
+    Args:
+        done: keys of runs that are not to be made again.
+        complain: told of instances that cannot be made.
+
     Attributes:
         skipped: runs that were there already, or whose instance could not be made.
-
-    Args:
-        plan: which runs to make.
-        done: keys of runs that are not to be made again.
-        complain: told of instances that cannot be made, each with its subject.
     """
 
     def __init__(

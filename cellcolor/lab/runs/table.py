@@ -10,7 +10,6 @@ from dataclasses import fields
 from fcntl import LOCK_EX, LOCK_NB, flock
 from os import PathLike
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Generic, TypeVar
 
 from pydantic import TypeAdapter
@@ -117,12 +116,7 @@ class TableFile(Generic[_R]):
     def __enter__(self) -> TableFile[_R]:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         os.close(self._handle)
 
 

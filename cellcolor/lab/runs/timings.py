@@ -91,17 +91,8 @@ def timing(
     )
 
 
-def start_up_timings(
-    file: Path,
-    repetitions: int,
-    command: str,
-) -> Iterator[Timing]:
-    """How long Python, ``import cellcolor`` and two commands take, in turn.
-
-    Args:
-        file: a small one, for ``solve``.
-        command: for the record.
-    """
+def start_up_timings(file: Path, repetitions: int, command: str) -> Iterator[Timing]:
+    """How long Python, ``import cellcolor`` and two commands take, in turn, ``solve`` on a file."""
     for repetition in range(repetitions):
         for subject, arguments in START_UP.items():
             files = (str(file),) if arguments[-1] == "solve" else ()
