@@ -78,11 +78,9 @@ def verify_bound(
     """Verify a lower bound of the number of segments, or of their cost, by its certificate.
 
     Args:
-        bound: one of a solution of it.
         regions: the color regions that each cell lies in, see
             :mod:`cellcolor.checker.color_regions`.
-        budget: how many choices may be tried.
-        deadline: when to give up, as if the budget was used up.
+        budget: how many choices may be tried. The deadline ends them in the same way.
         costs: what a segment of each color costs, for a bound of costs.
     """
     proof = Proof(instance, regions, budget, deadline, costs if bound.of == "cost" else None)

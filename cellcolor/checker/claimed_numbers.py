@@ -25,8 +25,7 @@ def number_problems(
     """What is wrong with a solution's numbers, each naming its member.
 
     Args:
-        solution: its division has been found legal, if it has one.
-        segments: of the division; None without one.
+        segments: of the division, which has been found legal; None without one.
         costs: what a segment of each color costs; None without an objective.
     """
     problems = _bound_problems(instance, solution, segments)
@@ -48,12 +47,9 @@ def number_problems(
 def claims(
     instance: Instance, solution: Solution, verdicts: Sequence[BoundVerdict] = ()
 ) -> dict[str, object]:
-    """The members of a solution that were not verified, with what they say.
+    """The members of a valid solution that were not verified, with what they say.
 
     That there is one segment where there is a cell needs no proof.
-
-    Args:
-        solution: a valid solution of it.
     """
     verified = [verdict.bound for verdict in verdicts if verdict.outcome == "verified"]
     least = min(1, len(instance.cells))
@@ -245,12 +241,7 @@ def segments_of_whole_cells(instance: Instance, costs: Sequence[int] | None = No
 
 
 def contradictions(instance: Instance, solution: Solution) -> list[str]:
-    """Where a solution that the checker has passed and ``known`` cannot both be right.
-
-    Args:
-        instance: the topological graph, with results known from elsewhere or without.
-        solution: a valid solution of it, in either search space.
-    """
+    """Where a solution that the checker has passed and ``known`` cannot both be right."""
     known = instance.known
     if known is None:
         return []

@@ -37,11 +37,7 @@ def regions_on_surface(
     """The color regions that one vertex of each cell lies in, flooded over the mesh.
 
     Two vertices of a mesh edge are in one region of a color that both have, unless the edge has a
-    crack of that color. The graph's edges are not believed.
-
-    Args:
-        surface: the labelled surface that the graph was made of.
-        vertex_cell: the cell of each vertex, below 0 for none.
+    crack of that color. The graph's edges are not believed; ``vertex_cell`` is below 0 for none.
     """
     together: Groups[ColorRegion] = Groups()
     for a, b in surface.left_of:

@@ -22,7 +22,7 @@ in u's component of the wall with odd parity.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from cellcolor.checker.filled_surface import WORK, Domain, FilledSurface
@@ -33,33 +33,27 @@ MOST_CIRCLES = 10
 """If a region has more independent closed curves, nothing is concluded: n of them have 2^n sums."""
 
 
-def _nothing(_choices: int) -> None:
-    """Counts nothing."""
-
-
 @dataclass(frozen=True)
 class TwoRegions:
     """Two color regions on the surface that their cells make.
 
     Attributes:
-        instance: the topological graph.
-        colors: the two colors.
-        cells: the cells of each of the two color regions.
         count: called with the amount of work about to be done; raises if that is too much.
     """
 
     instance: Instance
     colors: tuple[int, int]
     cells: tuple[frozenset[int], frozenset[int]]
-    count: Callable[[int], None] = _nothing
+    count: Callable[[int], None]
+    _known: dict[object, list[dict[int, int]]] = field(init=False, default_factory=dict)
+    """The last result of ``_connected``."""
 
     def must_cross(self, one: tuple[int, int], other: tuple[int, int]) -> bool:
         """Whether it is proved that segments of the two regions would cross.
 
         Args:
-            one: two cells of the first region that are not in the second; the first segment
-                touches both.
-            other: two cells of the second region that are not in the first, for the second segment.
+            one: two cells of the first region alone; the first segment touches both.
+            other: the same for the second segment.
         """
         first, second = self.cells
         if not set(one) <= first - second or not set(other) <= second - first:
@@ -67,12 +61,8 @@ class TwoRegions:
         return self._parted(0, one, other) or self._parted(1, other, one)
 
     def _parted(self, side: int, pair: tuple[int, int], other: tuple[int, int]) -> bool:
-        """Whether no segment of one side connects two cells beside a segment of the other side.
-
-        Args:
-            side: 0 or 1.
-            pair: two cells of the side's region, to be connected.
-            other: two cells that the other region's segment connects.
+        """Whether no segment of a side, 0 or 1, connects a pair of cells of its region beside a
+        segment of the other region that connects two others.
         """
         own, theirs = self._domains[side], self._domains[1 - side]
         if not set(pair) <= own.tree.keys() or not set(other) <= theirs.tree.keys():
@@ -87,11 +77,6 @@ class TwoRegions:
             self._known.clear()
             self._known[key] = self._connected(*key)
         return all(root[pair[0]] != root[pair[1]] for root in self._known[key])
-
-    @cached_property
-    def _known(self) -> dict[tuple[int, tuple[int, int], object], list[dict[int, int]]]:
-        """The last result of ``_connected``."""
-        return {}
 
     @cached_property
     def _surface(self) -> FilledSurface:
@@ -117,14 +102,8 @@ class TwoRegions:
     def _connected(self, side: int, other: tuple[int, int], wall: object) -> list[dict[int, int]]:
         """Which cells in one component of the wall a side's color connects in even parity.
 
-        Args:
-            side: 0 or 1.
-            other: two cells that the other region's segment connects.
-            wall: the component.
-
-        Returns:
-            A dictionary for each sum of cycles of the other region. It maps each of the cells to a
-            number; cells with the same number are connected.
+        The other region's segment connects two cells. For each sum of cycles of that region there
+        is a dictionary that maps the component's cells to numbers, the same if they are connected.
         """
         own, theirs = self._domains[side], self._domains[1 - side]
         way = self._surface.way(theirs, other[0]) ^ self._surface.way(theirs, other[1])

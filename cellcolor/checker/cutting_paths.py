@@ -16,10 +16,6 @@ def cutting_paths(instance: Instance, division: Division, seams: Sequence[Seam] 
 
     A curve is closed or begins and ends on the border of its cell; curves do not cross. It does
     not matter where seams lie, nor where darts in state 0 do.
-
-    Args:
-        division: a legal division of it.
-        seams: the seams that the division's darts refer to.
     """
     virtual = {seam.id for seam in seams}
     return sum(
@@ -29,26 +25,16 @@ def cutting_paths(instance: Instance, division: Division, seams: Sequence[Seam] 
 
 
 class WholeSubCell(NamedTuple):
-    """A sub-cell as it is on the surface, where no seam parts anything.
-
-    Attributes:
-        color: the color it is painted in.
-        segment: the segment it belongs to.
-        strands: its darts in state 1, those of seams left out.
-    """
+    """A sub-cell as it is on the surface, where no seam parts anything."""
 
     color: int
     segment: int
     strands: frozenset[Strand]
+    """Its darts in state 1, those of seams left out."""
 
 
 def whole_subcells(cell: CellDivision, seams: set[int]) -> list[WholeSubCell]:
-    """The sub-cells of a cell: those that only a seam parts are one.
-
-    Args:
-        cell: the cell's division, in the cyclic list that seams make of its loops.
-        seams: the seams' ids.
-    """
+    """The sub-cells of a cell: those that only a seam, given by its id, parts are one."""
     holder = {
         strand_of(name): number for number, sub in enumerate(cell.subcells) for name in sub.darts
     }

@@ -15,12 +15,8 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Seam
 
 
-class BadSeams(Exception):
-    """The seams do not make one cyclic list of a cell's loops."""
-
-
-class TooManyDarts(Exception):
-    """There are too many strands to check them within memory."""
+class NoLists(Exception):
+    """Seams do not make one cyclic list of a cell's loops, or there are too many strands."""
 
 
 MOST_DARTS = 500_000
@@ -36,29 +32,31 @@ def live_lists(instance: Instance, seams: Sequence[Seam], strands: int) -> list[
         strands: strands per live edge; a seam has its own number.
 
     Raises:
-        BadSeams: a seam is not where it can be, or loops with live darts stay unconnected.
-        TooManyDarts: more than can be checked in bounded memory.
+        NoLists: a seam is not where it can be, loops with live darts stay unconnected, or there are
+            more darts than can be checked in bounded memory.
     """
     counts = {edge.id: strands if instance.joinable(edge.id) else 0 for edge in instance.edges}
     darts = 2 * sum(counts.values())  # what is joinable has a cell on both sides
     darts += sum(2 * seam.strands for seam in seams)
     if darts > MOST_DARTS:
-        raise TooManyDarts(f"would make {darts} darts, at most {MOST_DARTS} are checked")
+        raise NoLists(f"strands: would make {darts} darts, at most {MOST_DARTS} are checked")
     loops = {cell.id: [list(loop) for loop in cell.loops] for cell in instance.cells}
     highest = max((edge.id for edge in instance.edges), default=0)
     for seam in seams:
         if seam.id <= highest:
-            raise BadSeams(f"seam {seam.id}: its id must be above {highest}")
+            raise NoLists(f"seams: seam {seam.id}: its id must be above {highest}")
         highest = seam.id
         if seam.cell not in loops:
-            raise BadSeams(f"seam {seam.id}: there is no cell {seam.cell}")
+            raise NoLists(f"seams: seam {seam.id}: there is no cell {seam.cell}")
         _connect(loops[seam.cell], seam)
         counts[seam.id] = seam.strands
     lists = []
     for cell, found in loops.items():
         live = [loop for loop in found if any(counts[abs(dart)] for dart in loop)]
         if len(live) > 1:
-            raise BadSeams(f"cell {cell}: {len(live)} loops with live darts are not connected")
+            raise NoLists(
+                f"seams: cell {cell}: {len(live)} loops with live darts are not connected"
+            )
         whole = live[0] if live else []
         lists.append([s for dart in whole for s in strands_along(dart, counts[abs(dart)])])
     return lists
@@ -71,13 +69,14 @@ def strands_along(dart: int, count: int) -> list[Strand]:
 
 
 def _connect(loops: list[list[int]], seam: Seam) -> None:
+    where = f"seams: seam {seam.id}"
     near = next((loop for loop in loops if seam.from_ in loop), None)
     far = next((loop for loop in loops if seam.to in loop), None)
     if near is None or far is None:
         missing = seam.from_ if near is None else seam.to
-        raise BadSeams(f"seam {seam.id}: dart {missing} is not in the loops of cell {seam.cell}")
+        raise NoLists(f"{where}: dart {missing} is not in the loops of cell {seam.cell}")
     if near is far:
-        raise BadSeams(f"seam {seam.id}: darts {seam.from_} and {seam.to} are in one loop already")
+        raise NoLists(f"{where}: darts {seam.from_} and {seam.to} are in one loop already")
     start = far.index(seam.to) + 1
     detour = [seam.id, *far[start:], *far[:start], -seam.id]
     place = near.index(seam.from_) + 1

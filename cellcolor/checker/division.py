@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from cellcolor.checker.certificates import BoundVerdict, verify_bound
 from cellcolor.checker.claimed_numbers import number_problems
 from cellcolor.checker.color_regions import ColorRegion, regions_of_cells
-from cellcolor.checker.dart_lists import BadSeams, TooManyDarts, live_lists
+from cellcolor.checker.dart_lists import NoLists, live_lists
 from cellcolor.checker.drawable import can_be_drawn
 from cellcolor.checker.groups import Groups
 from cellcolor.checker.scheme_rules import (
@@ -67,21 +67,13 @@ class Report:
 def check_division(
     instance: Instance, division: Division, seams: Sequence[Seam] = (), strands: int = 1
 ) -> Report:
-    """Hold a division against the instance (docs/semantics.md, sections 2, 3 and 5).
-
-    Args:
-        division: sub-cells, colors and darts in state 1 of every cell, segments numbered.
-        seams: the seams that the darts refer to.
-        strands: strands per live edge.
-    """
+    """Hold a division against the instance (docs/semantics.md, sections 2, 3 and 5)."""
     if problems := _id_problems(instance, division):
         return Report(tuple(problems), (), None)
     try:
         lists = live_lists(instance, seams, strands)
-    except BadSeams as error:
-        return Report((f"seams: {error}",), (), None)
-    except TooManyDarts as error:
-        return Report((f"strands: {error}",), (), None)
+    except NoLists as error:
+        return Report((str(error),), (), None)
     own_colors = {seam.id: frozenset(instance.cells[seam.cell].colors) for seam in seams}
 
     def joinable(strand: Strand) -> frozenset[int]:
@@ -90,15 +82,15 @@ def check_division(
 
     painted: list[PaintedCell] = []
     for cell, darts in zip(division, lists, strict=True):
-        found = _cell_problems(instance, cell, darts) or _crossing_problems(cell, darts)
+        block_of = {
+            strand_of(name): block for block, sub in enumerate(cell.subcells) for name in sub.darts
+        }
+        painted.append(PaintedCell(darts, block_of, [sub.color for sub in cell.subcells]))
+        found = _cell_problems(instance, cell, darts)
+        if not found and (crossed := crossing(painted[-1])) is not None:
+            found = [f"cells[{cell.id}].subcells: {crossed[0]} and {crossed[1]} cross"]
         problems += found
-        if not found:
-            painted.append(_painted(cell, darts))
-    if problems:
-        return Report(tuple(problems), (), None)
-
-    problems += _edge_problems(division, joinable)
-    if problems:
+    if problems := problems or _edge_problems(division, joinable):
         return Report(tuple(problems), (), None)
     stuck = unavoidable_join(painted, joinable)
     if stuck is not None and seams:
@@ -115,9 +107,6 @@ def check_scheme(instance: Instance, division: Division) -> Report:
     """Hold a scheme against the instance (docs/semantics.md, section 3).
 
     Schemes know no seams: in cells with several loops sub-cells have to be such as can be drawn.
-
-    Args:
-        division: sub-cells, colors and darts in state 1 of every cell, segments numbered.
     """
     if instance.most_live_loops < 2:
         return check_division(instance, division)
@@ -160,8 +149,7 @@ def _id_problems(instance: Instance, division: Division) -> list[str]:
 def _legal(division: Division, stuck: Strand | None, not_canonical: Sequence[str]) -> Report:
     """The report on a division whose cells and joined edges are legal.
 
-    Args:
-        stuck: an edge in state 0 that has to show one joinable color on both sides; None if none.
+    ``stuck`` is an edge in state 0 that has to show one joinable color on both sides.
     """
     problems, segments = _segments(division)
     if stuck is not None:
@@ -178,14 +166,12 @@ def check_solution(
 ) -> Report:
     """Hold a solution against its instance: its division, and every number in it.
 
-    Lower bounds are verified by their certificates; those without one are taken on trust
-    (:func:`~cellcolor.checker.claimed_numbers.claims` names what is), as far as they contradict
-    nothing.
+    Lower bounds are verified by their certificates before the deadline; those without one are taken
+    on trust (:func:`~cellcolor.checker.claimed_numbers.claims` names what is), as far as they
+    contradict nothing.
 
     Args:
-        regions: the color regions that each cell lies in, if they are not to be read off the
-            graph; for certificates.
-        deadline: when certificates have to be verified.
+        regions: the color regions that each cell lies in, if they are not to be read off the graph.
     """
     problems: list[str] = []
     costs = None
@@ -246,20 +232,6 @@ def _cell_problems(instance: Instance, cell: CellDivision, darts: Sequence[Stran
                 problems.append(f"{where}.darts: {_text(dart)} appears twice")
             seen.add(dart)
     return problems
-
-
-def _crossing_problems(cell: CellDivision, darts: Sequence[Strand]) -> list[str]:
-    crossed = crossing(_painted(cell, darts))
-    if crossed is None:
-        return []
-    return [f"cells[{cell.id}].subcells: {crossed[0]} and {crossed[1]} cross"]
-
-
-def _painted(cell: CellDivision, darts: Sequence[Strand]) -> PaintedCell:
-    block_of = {
-        strand_of(name): number for number, sub in enumerate(cell.subcells) for name in sub.darts
-    }
-    return PaintedCell(darts, block_of, [sub.color for sub in cell.subcells])
 
 
 def _edge_problems(division: Division, joinable: Joinable) -> list[str]:

@@ -47,9 +47,6 @@ class FilledSurface:
     Args:
         rooms: where segments can be: each a color, and cells in which it is available.
         count: called with the amount of work about to be done; raises if that is too much.
-
-    Attributes:
-        polygons: the darts of each cell, its seams' among them.
     """
 
     def __init__(
@@ -168,9 +165,7 @@ class FilledSurface:
     def circles(self, domain: Domain, most: int) -> list[set[int]] | None:
         """Closed curves in a domain; every other one is homologous to a sum of some of them.
 
-        Args:
-            domain: of this surface.
-            most: with more of them, or too many classes of curves to tell, there is no answer.
+        None if there are more than ``most``, or too many classes of curves to tell.
         """
         labels = self.classes
         if labels is None:

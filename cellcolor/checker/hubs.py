@@ -74,11 +74,7 @@ class Hubs:
         return ""
 
     def links(self, hub: int, count: Callable[[], None]) -> int:
-        """The most links that a cell can have, or more.
-
-        Args:
-            count: called once for each choice that is tried.
-        """
+        """The most links that a cell can have, or more; each choice that is tried is counted."""
         loops = self._live_loops(hub)
         if len(loops) > 1:
             return most_links([[min(self._live(d)) for d in loop] for loop in loops], count)
@@ -126,9 +122,7 @@ Corner = tuple[int, int]
 def most_links(loops: Sequence[Sequence[int]], count: Callable[[], None]) -> int:
     """No more links can be drawn side by side, each between two darts of one color.
 
-    Args:
-        loops: the color of each dart, in cyclic order.
-        count: called once for each choice that is tried.
+    Loops are the colors of their darts, in cyclic order. Each choice that is tried is counted.
     """
     # A dart that is left out was the end of one link at most, after others are put together.
     corners: list[list[Corner]] = []

@@ -35,22 +35,12 @@ from cellcolor.data.bound_kinds import (
 
 
 def verify_cells(proof: Proof, certificate: CertifiedCells, value: int) -> None:
-    """Verify that fewer color regions, or cheaper ones, do not touch all of the cells.
-
-    Raises:
-        Refused: they do.
-        BudgetExceeded: too many choices have been tried.
-    """
+    """Verify that fewer color regions, or cheaper ones, do not touch all of the cells."""
     _verify(proof, (CertifiedPart(value, certificate.cells),), value)
 
 
 def verify_parts(proof: Proof, certificate: CertifiedParts, value: int) -> None:
-    """Verify that the parts together need that many segments.
-
-    Raises:
-        Refused: they do not.
-        BudgetExceeded: too many choices have been tried.
-    """
+    """Verify that the parts together need that many segments."""
     _leave_out(proof, certificate.left_out)
     _verify(proof, certificate.parts, value)
 
@@ -187,7 +177,7 @@ def _tangle(proof: Proof, tangle: CertifiedTangle) -> Tangle:
     if not cannot_be_drawn(proof.instance, drawn, proof.count):
         named = [min(min(area) for area in s.groups[0]) for s in drawn]
         raise Refused(f"the segments of a tangle, of cells {few(named)}, could be drawn")
-    return Tangle(tuple(found))
+    return tuple(found)
 
 
 def _one_area(proof: Proof, cells: frozenset[int], region: ColorRegion, other: ColorRegion) -> None:

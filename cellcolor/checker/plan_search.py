@@ -42,24 +42,16 @@ class Conflict:
 
 @dataclass(frozen=True, slots=True)
 class TangledSegment:
-    """What a tangle says of one of its segments.
-
-    Attributes:
-        region: its color region.
-        groups: it touches a cell of each of these groups.
-        avoided: it touches none of these cells.
-    """
+    """What a tangle says of one of its segments: it touches a cell of each of the groups, and none
+    of those to be avoided."""
 
     region: ColorRegion
     groups: tuple[frozenset[int], ...]
     avoided: frozenset[int]
 
 
-@dataclass(frozen=True, slots=True)
-class Tangle:
-    """Segments that cannot all exist side by side."""
-
-    segments: tuple[TangledSegment, ...]
+Tangle = tuple[TangledSegment, ...]
+"""Segments that cannot all exist side by side."""
 
 
 class BudgetExceeded(Exception):
@@ -108,11 +100,7 @@ class _State:
 
 
 class PlanSearch:
-    """Every way to touch some cells with a number of segments.
-
-    Attributes:
-        tried: choices so far.
-    """
+    """Every way to touch some cells with a number of segments; ``tried`` counts choices so far."""
 
     def __init__(
         self,
@@ -149,7 +137,7 @@ class PlanSearch:
         self._tangles: list[list[_Needed]] = []
         for tangle in tangles:
             needed = []
-            for segment in tangle.segments:
+            for segment in tangle:
                 first = bits
                 for cells in (*segment.groups, segment.avoided):
                     for cell in cells:

@@ -20,10 +20,8 @@ class Proof:
     """The steps of one certificate.
 
     Attributes:
-        instance: the topological graph.
         regions: the color regions that each cell lies in, without those that were left out.
-        budget: how many choices may be tried.
-        deadline: when to give up, as if the budget was used up.
+        budget: how many choices may be tried. The deadline ends them in the same way.
         costs: what a segment of each color costs; None for 1 each.
         tried: choices so far.
     """

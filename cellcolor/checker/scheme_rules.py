@@ -1,7 +1,6 @@
 """The rules that make a division legal, and those that make it a scheme (docs/semantics.md).
 
 Where cells have several loops, the rules are read without seams (section 5).
-
 """
 
 from __future__ import annotations
@@ -152,12 +151,7 @@ def _contradiction(clauses: Sequence[tuple[_Literal, _Literal]]) -> Strand | Non
 
 @dataclass(frozen=True, slots=True)
 class PaintedLoops:
-    """A cell's division, loop by loop.
-
-    Attributes:
-        id: the cell.
-        loops: each live loop, with the sub-cells of the whole cell.
-    """
+    """A cell's division, loop by loop; each loop has the sub-cells of the whole cell."""
 
     id: int
     loops: tuple[PaintedCell, ...]

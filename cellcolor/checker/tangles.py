@@ -28,7 +28,6 @@ class Tangled:
     """A segment that is said not to fit beside others.
 
     Attributes:
-        color: its color.
         cells: those of its color region that it does not avoid.
         groups: it touches an area of each.
     """
@@ -51,9 +50,7 @@ def cannot_be_drawn(
 ) -> bool:
     """Whether it is proved that segments cannot lie side by side, which needs a sphere.
 
-    Args:
-        segments: that touch an area of each of their groups.
-        count: called with the amount of work about to be done; raises if that is too much.
+    ``count`` is called with the amount of work about to be done; it raises if that is too much.
     """
     rooms = list(dict.fromkeys((segment.color, segment.cells) for segment in segments))
     surface = FilledSurface(instance, rooms, count)

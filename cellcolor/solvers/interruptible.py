@@ -20,10 +20,9 @@ hubs."""
 def make_cp_solver(
     deadline: Deadline, workers: int, seed: int, effort: float | None = None
 ) -> cp_model.CpSolver:
-    """A CP-SAT solver with limits.
+    """A CP-SAT solver with limits; one worker searches in OR-Tools' default strategy.
 
     Args:
-        workers: its search workers; one searches in OR-Tools' default strategy.
         effort: the limit for each worker in OR-Tools' deterministic time, which measures the work
             done and not the clock; None for as long as there is time.
     """
@@ -51,7 +50,6 @@ def make_portfolio(
     Args:
         workers: its search workers, None for ``PORTFOLIO``.
         strategies: OR-Tools' names of those for ``FEW_WORKERS`` or fewer.
-        effort: see :func:`make_cp_solver`.
     """
     solver = make_cp_solver(deadline, workers or PORTFOLIO, seed, effort)
     if solver.parameters.num_workers <= FEW_WORKERS:
@@ -68,7 +66,6 @@ def solve_interruptibly(
     """Solve in a thread of its own, so that Ctrl-C here ends the search and keeps the best found.
 
     Args:
-        solver: made by :func:`make_cp_solver`.
         found: called with the objective of each better solution, in a thread of the solver.
 
     Returns:

@@ -36,7 +36,6 @@ def division_of_chains(
     Nothing is verified here: whether this is a legal division is for the checker to say.
 
     Args:
-        instance: cells with one live loop each.
         color: of each edge that the model joins.
         after: a dart in state 1 -> the next one of its sub-cell, which stands later in the loop.
     """

@@ -152,8 +152,10 @@ class _MiniZinc:
             CellcolorError: MiniZinc or the solver failed.
         """
         data = minizinc_data(instance)
-        heard = _Heard(instance)
-        failure = None
+        best: Division | None = None
+        complete, failure = False, None
+        color: dict[int, int] = {}
+        after: dict[int, int] = {}
         # A moment is kept back for reading the answer.
         deadline = options.deadline.earlier(0.05 * min(options.deadline.left, 10.0))
         with tempfile.TemporaryDirectory(prefix="cellcolor-") as place, suppress(OutOfTime):
@@ -167,44 +169,23 @@ class _MiniZinc:
             with Child([*command, *self.flags, str(MODEL), str(file)], Path(place)) as child:
                 # A signal may stand for the end of the time: OutOfTime.
                 for line in child.lines(deadline):
-                    if heard.take(line) and progress is not None:
-                        progress(count_segments(heard.best or ()), 0)
+                    word, *numbers = line.split() or [""]
+                    if word in ("joined", "link"):
+                        into = color if word == "joined" else after
+                        into[int(numbers[0])] = int(numbers[1])
+                    elif word == "-" * 10:  # a division is complete, better than those before
+                        best = division_of_chains(instance, color, after)
+                        color, after = {}, {}
+                        if progress is not None:
+                            progress(count_segments(best), 0)
+                    elif word == "=" * 10:
+                        complete = True
                 failure = child.failure
-        if failure is not None and heard.best is None:
+        if failure is not None and best is None:
             raise CellcolorError(f"{self.name}: {failure}")
-        if heard.best is None or not heard.done:
-            return Answer(heard.best, (), ())
-        bound = Bound("search", count_segments(heard.best), "strands")
-        return Answer(heard.best, (), (bound,))
-
-
-class _Heard:
-    """What MiniZinc has printed so far.
-
-    Attributes:
-        best: the last division; each is better than the one before.
-        done: there is no better one.
-    """
-
-    def __init__(self, instance: Instance) -> None:
-        self.best: Division | None = None
-        self.done = False
-        self._instance = instance
-        self._color: dict[int, int] = {}
-        self._after: dict[int, int] = {}
-
-    def take(self, line: str) -> bool:
-        """Read a line; True if a division is complete with it."""
-        word, *numbers = line.split() or [""]
-        if word in ("joined", "link"):
-            into = self._color if word == "joined" else self._after
-            into[int(numbers[0])] = int(numbers[1])
-        self.done |= line == "=" * 10
-        if line != "-" * 10:
-            return False
-        self.best = division_of_chains(self._instance, self._color, self._after)
-        self._color, self._after = {}, {}
-        return True
+        if best is None or not complete:
+            return Answer(best, (), ())
+        return Answer(best, (), (Bound("search", count_segments(best), "strands"),))
 
 
 class GecodeSolver(_MiniZinc):

@@ -104,12 +104,7 @@ class _Parsed:
 
 
 def read_answer(instance: Instance, text: str, kind: str) -> OutsideAnswer:
-    """The best division of an answer.
-
-    Args:
-        instance: the one that was exported.
-        text: what the solver printed, or the file of its solution.
-        kind: one of ``ANSWERS``.
+    """The best division of an answer, of a kind in ``ANSWERS``, to an instance that was exported.
 
     Raises:
         InputError: there is no solution in it, or it is not one of this instance's model.

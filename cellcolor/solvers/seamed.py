@@ -22,9 +22,6 @@ MOST_STRANDS = 10_000
 class Seamed:
     """An instance with the strands of its seams as edges; as it is if it needs no seams.
 
-    Args:
-        instance: the one to be solved.
-
     Raises:
         TooLarge: the seams would have too many strands: each may need twice those before it.
 

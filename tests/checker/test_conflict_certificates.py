@@ -44,7 +44,10 @@ def two_regions(surface: LabelledSurface) -> list[tuple[TwoRegions, tuple[int, .
     every = sorted(set().union(*regions))
     cells = {r: frozenset(c for c, own in enumerate(regions) if r in own) for r in every}
     return [
-        (TwoRegions(made.instance, (RED, BLUE), (cells[a], cells[b])), made.vertex_cell)
+        (
+            TwoRegions(made.instance, (RED, BLUE), (cells[a], cells[b]), lambda _: None),
+            made.vertex_cell,
+        )
         for a, b in itertools.product(every, every)
         if a[0] == RED and b[0] == BLUE
     ]

@@ -258,7 +258,9 @@ def test_what_must_cross_cannot_pass_around_a_handle(
         if (regions[RED] and regions[BLUE])
         else reject()
     )
-    two = TwoRegions(instance, (RED, BLUE), (frozenset(one[1]), frozenset(other[1])))
+    two = TwoRegions(
+        instance, (RED, BLUE), (frozenset(one[1]), frozenset(other[1])), lambda _: None
+    )
     first, second = sorted(one[1] - other[1]), sorted(other[1] - one[1])
     assume(len(first) > 1 and len(second) > 1)
     for _ in range(6):

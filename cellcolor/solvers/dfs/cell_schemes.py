@@ -69,11 +69,7 @@ def zero_colors(painted: Sequence[int | None], own: int) -> list[tuple[int, int]
 def cell_schemes(
     cell: GraphCell, known: Sequence[DartKnowledge], deadline: Deadline = NEVER
 ) -> Iterator[CellScheme]:
-    """Every way to divide and paint a cell that agrees with its solved neighbours.
-
-    Args:
-        known: for each dart, what the cell beyond it has decided.
-    """
+    """Every way to divide and paint a cell that agrees with what is known across its darts."""
     return _CellSearch(cell, known, deadline).schemes()
 
 

@@ -22,8 +22,6 @@ class GraphCell:
     """A cell with one cyclic list of live darts.
 
     Attributes:
-        id: of the cell in the instance.
-        colors: its available colors.
         darts: its live darts in cyclic order.
         joinable: for each dart, the colors that may continue across it.
         partner: for each dart, the place of its twin if that is in the same cell, else -1.
@@ -42,8 +40,7 @@ class GraphCell:
 class Graphs:
     """The cells of an instance in search order, each as one cyclic list of darts.
 
-    Args:
-        strands: how many parallel strands every live edge has.
+    Every live edge has so many parallel strands.
     """
 
     def __init__(self, instance: Instance, strands: int) -> None:

@@ -231,9 +231,6 @@ def _hits(
 class SegmentCounts:
     """Sub-cells joined into segments: a union-find whose last steps can be taken back.
 
-    Args:
-        price: what a segment in each region costs.
-
     Attributes:
         cost: the paper's cost of the current painting, "the number of color segments in the
             current portion of the graph", where each costs 1.
@@ -276,7 +273,7 @@ class SegmentCounts:
         self.cost -= self._price[self.region[b]]
 
     def mark(self) -> tuple[int, int]:
-        """Where to come back to."""
+        """What :meth:`undo` comes back to."""
         return len(self._parent), len(self._joined)
 
     def undo(self, mark: tuple[int, int]) -> None:
@@ -298,8 +295,7 @@ Literal = int
 def zeros_fit(cells: Sequence[GraphCell], schemes: Sequence[CellScheme]) -> bool:
     """Whether the runs of zeros can be divided so that no edge in state 0 could be joined.
 
-    Args:
-        cells: cells that no live edge connects to others.
+    No live edge connects the cells to others.
     """
     clauses: list[tuple[Literal, Literal]] = []
     shows: dict[DartName, list[tuple[int, Literal]]] = {}

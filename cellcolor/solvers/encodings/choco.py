@@ -45,11 +45,7 @@ class Ranks:
     """The model; each constraint group is a method, in the order in which they are called."""
 
     def __init__(self, problem: Problem, fewest: int) -> None:
-        """Write the model.
-
-        Args:
-            fewest: a lower bound of the number of segments.
-        """
+        """Write the model; ``fewest`` is a lower bound of the number of segments."""
         from pychoco.model import Model
 
         self.problem = problem

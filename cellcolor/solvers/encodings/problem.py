@@ -30,7 +30,7 @@ class Problem:
     """The live graph. A dart is a signed edge; ``-dart`` is the other side of the edge.
 
     Attributes:
-        cells: the live darts of each cell in cyclic order, with the cell on their left.
+        cells: the live darts of each cell in cyclic order.
         colors: the joinable colors of each live edge, without dominated ones.
         cell_colors: the available colors of each cell, without dominated ones.
         regions: the color regions; no segment reaches beyond one.

@@ -84,7 +84,6 @@ class Coloring:
     """The model of an instance; ``joined`` and ``link`` are what a solution is read off.
 
     Attributes:
-        model: the constraints.
         joined: (edge, color) -> the edge is joined in this color.
         link: (dart, later dart of the same cell) -> the one follows the other in one sub-cell.
     """
@@ -267,11 +266,7 @@ class Coloring:
 
 
 def require_solution(coloring: Coloring, true: Collection[int]) -> None:
-    """Refuse values that break a constraint of the model.
-
-    Args:
-        coloring: the model of an instance.
-        true: the variables that are 1; those above the model's own are left alone.
+    """Refuse values that break a constraint; variables above the model's own are left alone.
 
     Raises:
         InputError: a constraint does not hold; the first is identified by its variables.

@@ -14,7 +14,6 @@ import sys
 import tempfile
 from collections.abc import Iterable
 from contextlib import suppress
-from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
@@ -22,7 +21,7 @@ from typing import ClassVar
 
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import count_segments
+from cellcolor.data.solution import Division, count_segments
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import CellcolorError, SolverMissing
 from cellcolor.processes import Child
@@ -30,35 +29,6 @@ from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains
 from cellcolor.solvers.linear.coloring import Coloring, joined_and_linked
 from cellcolor.solvers.linear.model import mps, wcnf
-
-
-@dataclass
-class _Heard:
-    """What the program has printed so far.
-
-    Attributes:
-        bound: no division has fewer segments.
-        true: the variables that are 1 in its best solution; None without one.
-        done: that solution is proved the best.
-    """
-
-    bound: int = 0
-    true: frozenset[int] | None = None
-    done: bool = False
-
-    def take(self, line: str) -> bool:
-        """Read a line; False if it is one of the solver's own, which says nothing to us."""
-        word, _, rest = line.partition(" ")
-        if word == "bound":
-            # A solver's own bound is off by its tolerance.
-            self.bound = max(self.bound, math.ceil(float(rest) - 1e-4))
-        elif word == "solution":
-            self.true = frozenset(int(name.removeprefix("x")) for name in rest.split())
-        elif word == "done":
-            self.done = True
-        else:
-            return False
-        return True
 
 
 class _Rival:
@@ -98,7 +68,8 @@ class _Rival:
         if not instance.cells:
             return Answer((), (), ())
         coloring = Coloring(instance)
-        heard = _Heard()
+        best: Division | None = None
+        bound = 0
         failure = None
         # A moment is kept back for reading the answer.
         deadline = options.deadline.earlier(0.05 * min(options.deadline.left, 10.0))
@@ -113,32 +84,28 @@ class _Rival:
             with Child(command, Path(place)) as child:
                 # A signal may stand for the end of the time: OutOfTime.
                 for line in child.lines(deadline):
-                    if heard.take(line) and progress is not None:
-                        progress(_segments(instance, coloring, heard.true), heard.bound)
+                    word, _, rest = line.partition(" ")
+                    if word == "bound":
+                        # A solver's own bound is off by its tolerance.
+                        bound = max(bound, math.ceil(float(rest) - 1e-4))
+                    elif word == "solution":
+                        true = frozenset(int(name.removeprefix("x")) for name in rest.split())
+                        best = division_of_chains(instance, *joined_and_linked(coloring, true))
+                    elif word == "done" and best is not None:
+                        bound = count_segments(best)
+                    else:
+                        continue  # one of the solver's own, which says nothing to us
+                    if progress is not None:
+                        progress(None if best is None else count_segments(best), bound)
                 failure = child.failure
-        if failure is not None and heard == _Heard():
+        if failure is not None and best is None and bound == 0:
             raise CellcolorError(f"{self.name}: {failure}")
-        return self._answer(instance, coloring, heard, failure)
-
-    def _answer(
-        self, instance: Instance, coloring: Coloring, heard: _Heard, failure: str | None
-    ) -> Answer:
         notes = () if failure is None else (f"{self.called} ended early: {failure}.",)
-        if heard.true is None:
-            return Answer(None, (), (Bound("model", heard.bound, "strands"),), notes=notes)
-        division = division_of_chains(instance, *joined_and_linked(coloring, heard.true))
-        bound = count_segments(division) if heard.done else heard.bound
-        return Answer(division, (), (Bound("model", bound, "strands"),), notes=notes)
+        return Answer(best, (), (Bound("model", bound, "strands"),), notes=notes)
 
     def _lines(self, coloring: Coloring, title: str) -> Iterable[str]:
         """The file that the program reads."""
         return mps(coloring.model, title)
-
-
-def _segments(instance: Instance, coloring: Coloring, true: frozenset[int] | None) -> int | None:
-    if true is None:
-        return None
-    return count_segments(division_of_chains(instance, *joined_and_linked(coloring, true)))
 
 
 class HighsSolver(_Rival):
