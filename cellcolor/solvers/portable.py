@@ -24,13 +24,18 @@ class Portable:
 
     Attributes:
         about: what reads it.
-        kind: how such a file is distinguished from other files, which are not overwritten.
+        begin: a pattern that such a file begins with; other files are not overwritten.
         write: makes its lines; raises InputError and TooLarge for what the model cannot have.
     """
 
     about: str
-    kind: FileKind
+    begin: bytes
     write: Callable[[Instance], Iterator[str]]
+
+    @property
+    def kind(self) -> FileKind:
+        """How such a file is distinguished from others."""
+        return FileKind(f"a file for {self.about} written by cellcolor", re.compile(self.begin))
 
 
 def _title(instance: Instance) -> str:
@@ -53,23 +58,18 @@ def _text(mark: str, text: Callable[[Instance], str]) -> Callable[[Instance], It
     return write
 
 
-def _portable(about: str, begin: bytes, write: Callable[[Instance], Iterator[str]]) -> Portable:
-    kind = FileKind(f"a file for {about} written by cellcolor", re.compile(begin))
-    return Portable(about, kind, write)
-
-
 PORTABLE = {
-    "opb": _portable(
+    "opb": Portable(
         "pseudo-Boolean solvers", rb"\* #variable=[^\n]*\n\* cellcolor: ", _linear(opb)
     ),
-    "wcnf": _portable("MaxSAT solvers", b"c cellcolor: ", _linear(wcnf)),
-    "mps": _portable("solvers of mixed-integer programs", rb"\* cellcolor: ", _linear(mps)),
-    "dzn": _portable(
+    "wcnf": Portable("MaxSAT solvers", b"c cellcolor: ", _linear(wcnf)),
+    "mps": Portable("solvers of mixed-integer programs", rb"\* cellcolor: ", _linear(mps)),
+    "dzn": Portable(
         "the MiniZinc model (models/constraints/coloring.mzn)",
         b"% cellcolor: ",
         _text("%", minizinc_data),
     ),
-    "lp": _portable(
+    "lp": Portable(
         "the answer set program (models/constraints/coloring.lp)",
         b"% cellcolor: ",
         _text("%", asp_facts),

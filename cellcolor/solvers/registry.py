@@ -8,7 +8,6 @@ Other packages register theirs as entry points of the group ``cellcolor.solvers`
 
 from __future__ import annotations
 
-from importlib.metadata import EntryPoint
 from typing import TYPE_CHECKING
 
 from cellcolor.errors import InputError, SolverMissing
@@ -59,11 +58,26 @@ def make_solver(name: str) -> Solver:
             registered cannot be imported or is no solver.
         SolverMissing: what it needs is not installed.
     """
+    from cellcolor.solvers.interface import Abilities
+
     point = find(name, _OWN, GROUP, "solver")
+    solver: Solver
     if name in _OWN:
-        solver: Solver = point.load()()
+        solver = point.load()()
         return solver
-    return _made(point)
+    # The faults of another package's solver are told in a line.
+    where = f"{point.name!r}, registered as {point.value},"
+    make = load(point, "solver")
+    try:
+        solver = make()
+    except SolverMissing:
+        raise
+    except Exception as error:
+        reason = f"{type(error).__name__}: {error}"
+        raise InputError(None, "solver", f"{where} cannot be made: {reason}") from error
+    if not isinstance(getattr(solver, "abilities", None), Abilities):
+        raise InputError(None, "solver", f"{where} is not a solver: it declares no abilities")
+    return solver
 
 
 def solver_version(name: str) -> str:
@@ -77,21 +91,3 @@ def solver_version(name: str) -> str:
         return str(own)
     distribution = find(name, _OWN, GROUP, "solver").dist
     return __version__ if distribution is None else distribution.version
-
-
-def _made(point: EntryPoint) -> Solver:
-    """A solver of another package, whose faults are told in a line."""
-    from cellcolor.solvers.interface import Abilities
-
-    where = f"{point.name!r}, registered as {point.value},"
-    make = load(point, "solver")
-    try:
-        solver: Solver = make()
-    except SolverMissing:
-        raise
-    except Exception as error:
-        reason = f"{type(error).__name__}: {error}"
-        raise InputError(None, "solver", f"{where} cannot be made: {reason}") from error
-    if not isinstance(getattr(solver, "abilities", None), Abilities):
-        raise InputError(None, "solver", f"{where} is not a solver: it declares no abilities")
-    return solver

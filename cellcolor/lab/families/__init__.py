@@ -4,37 +4,20 @@ All of them are functions of a seed and a few numbers; the same arguments give t
 ``registry`` has those that need a seed only, by name, for campaigns and benchmarks.
 """
 
-from cellcolor.lab.families.blobs import blobs
-from cellcolor.lab.families.graphs import planar_graph
-from cellcolor.lab.families.hubs import (
-    cover_tree,
-    hub,
-    hub_grid,
-    hub_minimum,
-    hub_with_loops,
-    wide_hub,
-)
-from cellcolor.lab.families.meshes import SHAPES, Topology
-from cellcolor.lab.families.parts import part
-from cellcolor.lab.families.registry import GROWING, LARGE, MEDIUM, SMALL, Family
-from cellcolor.lab.families.voronoi import voronoi
-
-__all__ = [
-    "GROWING",
-    "LARGE",
-    "MEDIUM",
-    "SHAPES",
-    "SMALL",
-    "Family",
-    "Topology",
-    "blobs",
-    "cover_tree",
-    "hub",
-    "hub_grid",
-    "hub_minimum",
-    "hub_with_loops",
-    "part",
-    "planar_graph",
-    "voronoi",
-    "wide_hub",
-]
+from cellcolor.lab.families.blobs import blobs as blobs
+from cellcolor.lab.families.graphs import planar_graph as planar_graph
+from cellcolor.lab.families.hubs import cover_tree as cover_tree
+from cellcolor.lab.families.hubs import hub as hub
+from cellcolor.lab.families.hubs import hub_grid as hub_grid
+from cellcolor.lab.families.hubs import hub_minimum as hub_minimum
+from cellcolor.lab.families.hubs import hub_with_loops as hub_with_loops
+from cellcolor.lab.families.hubs import wide_hub as wide_hub
+from cellcolor.lab.families.meshes import SHAPES as SHAPES
+from cellcolor.lab.families.meshes import Topology as Topology
+from cellcolor.lab.families.parts import part as part
+from cellcolor.lab.families.registry import GROWING as GROWING
+from cellcolor.lab.families.registry import LARGE as LARGE
+from cellcolor.lab.families.registry import MEDIUM as MEDIUM
+from cellcolor.lab.families.registry import SMALL as SMALL
+from cellcolor.lab.families.registry import Family as Family
+from cellcolor.lab.families.voronoi import voronoi as voronoi

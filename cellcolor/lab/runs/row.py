@@ -38,35 +38,17 @@ Key = tuple[str, str, str, str, int | None, float, int]
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One run.
+    """One run; docs/formats/tables.md says what the columns are.
 
     Attributes:
-        family: what the instance is from; of a file, the name of its folder.
         seed: of the instance within its family, None for a file.
-        instance: its name.
-        sha256: its fingerprint.
-        cells, edges, colors: how many it has.
-        live_darts: the most that one of its cells has.
-        live_loops: the same for loops.
-        search_space: in which it was solved.
-        solver: its registered name.
-        solver_version: what answered.
         workers: that the solver was told to use, None if it chose itself.
-        limit: seconds that it was given.
-        repetition: 0, 1, 2, …; also the seed of what is random in the solver.
-        status: how it ended.
-        segments: of the best division, None without one.
-        lower_bound: that was proved in the search space.
-        proved_for_surface: whether the minimum is proved for any division of the surface.
+        limit: in seconds.
         seconds: of solving alone, by the solver's own clock.
         cpu_seconds: of all processors, of the whole process.
         process_seconds: from the start of the process to its end.
         peak_mb: the most memory of the whole process, 2**20 bytes.
         error: a line, None if nothing went wrong.
-        cores, memory_mb, cpu, python, cellcolor: as in :class:`cellcolor.machine.Machine`.
-        load: average of the machine's last minute when the run ended.
-        date: when the run ended, UTC.
-        command: that made the run.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid", allow_inf_nan=False)

@@ -25,22 +25,14 @@ START_UP: dict[str, tuple[str, ...]] = {
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """One measurement.
+    """One measurement; the other columns are as in :class:`cellcolor.lab.runs.row.Row`.
 
     Attributes:
         subject: what was measured.
         way: how it was done, ``cellcolor`` or something that it is compared with.
         size: of its input, in ``unit``; None if that is of no interest.
-        unit: what the size counts, None without a size.
-        repetition: 0, 1, 2, …
         status: ``done``, or how it ended else.
         seconds: by the clock.
-        cpu_seconds: of all processors.
-        peak_mb: the most memory of the process, 2**20 bytes.
-        cores, memory_mb, cpu, python, cellcolor: as in :class:`cellcolor.machine.Machine`.
-        load: average of the machine's last minute.
-        date: when it ended, UTC.
-        command: that measured it.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid", allow_inf_nan=False)

@@ -145,11 +145,6 @@ class _Tables:
         return None
 
 
-def most_links(colors: Sequence[frozenset[int]], deadline: Deadline = NEVER) -> int:
-    """The links of :func:`best_grouping`."""
-    return best_grouping(colors, deadline=deadline).links
-
-
 def links_bound(
     loops: Sequence[Sequence[frozenset[int]]], deadline: Deadline = NEVER
 ) -> int | None:
@@ -164,7 +159,7 @@ def links_bound(
     if len(loops) == 1:
         if recursion_size(loops[0]) > MOST_ENTRIES:
             return None
-        return most_links(loops[0], deadline)
+        return best_grouping(loops[0], deadline=deadline).links
     if any(len(own) > 1 for loop in loops for own in loop):
         return None
     single = [[color for own in loop for color in own] for loop in loops]

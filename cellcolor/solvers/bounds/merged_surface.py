@@ -6,7 +6,7 @@ The polygons are glued along edges; curves on the surface are compared up to hom
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
 
 from cellcolor.data.instance import Instance
@@ -48,14 +48,14 @@ def merge_cells(instance: Instance, colors: Mapping[int, frozenset[int]]) -> Mer
     Args:
         colors: the colors that each cell may be painted in, of the cells that are looked at.
     """
-    loops = {cell: instance.cells[cell].loops for cell in colors}
+    loops = {cell: [list(loop) for loop in instance.cells[cell].loops] for cell in colors}
     sides: dict[int, tuple[int, int]] = {}
     joinable: dict[int, frozenset[int]] = {}
     for edge_id in {abs(dart) for own in loops.values() for loop in own for dart in loop}:
         edge = instance.edge(edge_id)
         sides[edge_id] = edge.left, edge.right
         joinable[edge_id] = frozenset(instance.joinable(edge_id))
-    return _merged(loops, sides, joinable, colors, {})
+    return merge_further(MergedCells(loops, sides, joinable, {}), colors, {})
 
 
 def merge_further(
@@ -67,27 +67,18 @@ def merge_further(
         colors: of each cell that is looked at, the colors that matter.
         apart: cells with different values here are not merged.
     """
-    return _merged(merged.loops, merged.sides, merged.joinable, colors, apart)
-
-
-def _merged(
-    loops: Mapping[int, Sequence[Sequence[int]]],
-    sides: Mapping[int, tuple[int, int]],
-    joinable: Mapping[int, frozenset[int]],
-    colors: Mapping[int, frozenset[int]],
-    apart: Mapping[int, Hashable],
-) -> MergedCells:
+    sides = merged.sides
     none = frozenset[int]()
     live: dict[int, frozenset[int]] = {}
     rings = _Rings()
     for cell in colors:
-        for loop in loops[cell]:
+        for loop in merged.loops[cell]:
             kept: list[int] = []
             for dart in loop:
                 edge = abs(dart)
                 if edge not in live:
                     left, right = sides[edge]
-                    live[edge] = joinable[edge] & colors.get(left, none) & colors.get(right, none)
+                    live[edge] = merged.joinable[edge] & colors.get(left, none) & colors.get(right, none)
                 if live[edge]:
                     kept.append(dart)
             rings.add(kept)

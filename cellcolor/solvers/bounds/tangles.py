@@ -205,36 +205,17 @@ class _Surface:
                     yield tuple(sides), crossings % 2 == 1
 
     def fewest(self, deadline: Deadline) -> list[Touching]:
-        """What cannot be drawn of the plan: merged cells, touched or avoided, none to be spared.
-
-        At first a merged cell goes from what one segment touches and from what others avoid at
-        once, since most that is avoided is so for the sake of the segment that touches it.
-        """
+        """What cannot be drawn of the plan: merged cells, touched or avoided, none to be spared."""
         plan = self.plan
 
         def tangled(touched: _Places, avoided: _Places) -> bool:
             return not self.can_be_drawn(_reduced(plan, touched, avoided), deadline)
 
-        def for_the_sake_of(touched: _Places) -> _Places:
-            cells = {cell for _, cell in touched}
-            return [place for place in every if place[1] in cells]
-
-        every = [(number, cell) for number, own in enumerate(plan) for cell in sorted(own.avoided)]
         touched: _Places = [(number, c) for number, own in enumerate(plan) for c in own.cells]
-        touched = _needed(touched, lambda some: tangled(some, for_the_sake_of(some)))
-        avoided = _needed(for_the_sake_of(touched), lambda some: tangled(touched, some))
+        avoided: _Places = [(n, c) for n, own in enumerate(plan) for c in sorted(own.avoided)]
         touched = _needed(touched, lambda some: tangled(some, avoided))
+        avoided = _needed(avoided, lambda some: tangled(touched, some))
         return _reduced(plan, touched, avoided)
-
-    def fewest_avoided(self, deadline: Deadline) -> list[Touching]:
-        """The plan, which cannot be drawn, with as few avoided merged cells as are found easily."""
-        touched = [(number, c) for number, own in enumerate(self.plan) for c in own.cells]
-        every = [(number, c) for number, own in enumerate(self.plan) for c in sorted(own.avoided)]
-        avoided = _needed(
-            every,
-            lambda some: not self.can_be_drawn(_reduced(self.plan, touched, some), deadline),
-        )
-        return _reduced(self.plan, touched, avoided)
 
     def grown(self, deadline: Deadline) -> Tangle:
         """The tangle of the plan, which cannot be drawn, with groups as large as easily found."""
@@ -324,7 +305,7 @@ class Tangles:
         plan = near.in_parts(near.fewest(deadline))
         # What is avoided was merged as the whole plan has it, and a part of it may be enough.
         close = self._seen_by(plan, _each(plan))
-        plan = close.fewest_avoided(deadline)
+        plan = close.fewest(deadline)
         return close.seen_by(plan, _each(plan)).grown(deadline)
 
     def _seen_by(self, plan: Sequence[Touching], apart: Mapping[int, Hashable]) -> _Surface:

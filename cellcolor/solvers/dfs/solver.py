@@ -64,8 +64,8 @@ class ReferenceSolver:
             for part in parts:
                 for _ in part.improve():
                     report()
-                if options.search_space == "paper":
-                    part.close()
+                if options.search_space == "paper" and part.segments is not None:
+                    part.bound = part.segments  # the search was complete
                     report()
         except OutOfTime:
             pass
@@ -162,16 +162,9 @@ class _Part:
         self.segments: int | None = None
         self.blocks: dict[int, _Blocks] = {}
         self.seams: list[Seam] = []
-        several = set(graphs.cells_with_several_loops())
-        self._enough = max(
-            (
-                strands
-                for cell in cells
-                if cell.id in several
-                for strands in graphs.sufficient_seam_strands(cell.id)
-            ),
-            default=0,
-        )
+        several = {cell.id for cell in cells}.intersection(graphs.cells_with_several_loops())
+        strands = (most for cell in several for most in graphs.sufficient_seam_strands(cell))
+        self._enough = max(strands, default=0)
         self.bound = self._search(0)[1].bound
 
     def improve(self) -> Iterator[None]:
@@ -196,11 +189,6 @@ class _Part:
                 yield
             if self.segments == self.bound:
                 return
-
-    def close(self) -> None:
-        """The search was complete: its minimum is a bound too."""
-        if self.segments is not None:
-            self.bound = self.segments
 
     def _search(self, seam_strands: int) -> tuple[list[GraphCell], Search, list[Seam]]:
         built = [self._graphs.cell(cell, seam_strands) for cell in self._cells]

@@ -28,7 +28,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import CellcolorError, SolverMissing
 from cellcolor.processes import Child
 from cellcolor.solvers.bounds.cover import greedy_strangers
-from cellcolor.solvers.bounds.hubs import most_links
+from cellcolor.solvers.bounds.hubs import best_grouping
 from cellcolor.solvers.encodings.problem import Problem
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains
@@ -197,7 +197,8 @@ class Ranks:
         """A number for the links of each cell, which has that bound in other sums as well."""
         for cell, links in self.links_of.items():
             colors = [self.problem.colors_of(dart) for dart in self.problem.cells[cell]]
-            self.linked[cell] = self.model.intvar(0, most_links(colors), f"links_{cell}")
+            most = best_grouping(colors).links
+            self.linked[cell] = self.model.intvar(0, most, f"links_{cell}")
             self.model.sum(links, "=", self.linked[cell]).post()
 
     def _homes(self) -> None:

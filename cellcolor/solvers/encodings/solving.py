@@ -14,7 +14,7 @@ from ortools.sat.python import cp_model
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.solvers.bounds.hubs import most_links
+from cellcolor.solvers.bounds.hubs import best_grouping
 from cellcolor.solvers.encodings.problem import Pair, Problem
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 from cellcolor.solvers.interruptible import make_portfolio, solve_interruptibly
@@ -98,8 +98,8 @@ class Encoding(ABC):
         for (one, _), link in self.links():
             links_of[self.problem.cell_of[one]].append(link)
         for cell, links in links_of.items():
-            darts = self.problem.cells[cell]
-            self.model.add(sum(links) <= most_links([self.problem.colors_of(d) for d in darts]))
+            colors = [self.problem.colors_of(dart) for dart in self.problem.cells[cell]]
+            self.model.add(sum(links) <= best_grouping(colors).links)
 
 
 class Trees(Encoding):

@@ -12,12 +12,11 @@ from __future__ import annotations
 import math
 import sys
 import tempfile
-from collections.abc import Iterable
 from contextlib import suppress
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
@@ -38,7 +37,7 @@ class _Rival:
     name: ClassVar[str]
     package: ClassVar[str]  # what is installed
     module: ClassVar[str]  # what is imported
-    ending: ClassVar[str] = "mps"
+    ending: ClassVar[Literal["mps", "wcnf"]] = "mps"  # of the file that it reads
     called: ClassVar[str]
 
     def __init__(self) -> None:
@@ -76,7 +75,8 @@ class _Rival:
         with tempfile.TemporaryDirectory(prefix="cellcolor-") as place, suppress(OutOfTime):
             file = Path(place) / f"model.{self.ending}"
             with file.open("w", encoding="ascii") as stream:
-                for line in deadline.watch(self._lines(coloring, instance.sha256)):
+                lines = {"mps": mps, "wcnf": wcnf}[self.ending](coloring.model, instance.sha256)
+                for line in deadline.watch(lines):
                     stream.write(f"{line}\n")
             # Its own limit comes earlier, so that it can say what it knows in the end.
             arguments = self.name, str(file), f"{0.9 * deadline.left:.2f}", str(options.seed)
@@ -103,10 +103,6 @@ class _Rival:
         notes = () if failure is None else (f"{self.called} ended early: {failure}.",)
         return Answer(best, (), (Bound("model", bound, "strands"),), notes=notes)
 
-    def _lines(self, coloring: Coloring, title: str) -> Iterable[str]:
-        """The file that the program reads."""
-        return mps(coloring.model, title)
-
 
 class HighsSolver(_Rival):
     """HiGHS, branch and cut."""
@@ -125,6 +121,3 @@ class MaxSatSolver(_Rival):
 
     name, package, module, called = "maxsat", "python-sat", "pysat", "PySAT RC2"
     ending = "wcnf"
-
-    def _lines(self, coloring: Coloring, title: str) -> Iterable[str]:
-        return wcnf(coloring.model, title)
