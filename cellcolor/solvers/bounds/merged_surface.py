@@ -78,7 +78,9 @@ def merge_further(
                 edge = abs(dart)
                 if edge not in live:
                     left, right = sides[edge]
-                    live[edge] = merged.joinable[edge] & colors.get(left, none) & colors.get(right, none)
+                    live[edge] = (
+                        merged.joinable[edge] & colors.get(left, none) & colors.get(right, none)
+                    )
                 if live[edge]:
                     kept.append(dart)
             rings.add(kept)
