@@ -21,6 +21,8 @@ class Conflict(NamedTuple):
 def conflicts(instance: Instance, first: Region, second: Region) -> list[Conflict]:
     """All known conflicts between segments in two color regions."""
     found: dict[frozenset[frozenset[MergedCell]], Conflict] = {}
+    if first[0] == second[0]:
+        return []
     pair = RegionPair(instance, first, second)
     for side in (pair.first, pair.second):
         for near, far in combinations(side.merged_cells, 2):

@@ -160,13 +160,11 @@ def examine(seed: int, time_limit: float, number: int) -> Outcome:
     wrong: list[Wrong] = []
     mesh: MeshFinding | None = None
 
-    def on_graph(instance: Instance) -> Finding:
-        return compare_solvers(instance, time_limit)
-
     def on_mesh(surface: LabelledSurface) -> MeshFinding | None:
         instance = decompose(surface)
         return compare_on_mesh(surface, instance, time_limit) if instance.cells else None
 
+    on_graph = partial(compare_solvers, time_limit=time_limit)
     finding, message = attempt(partial(on_graph, case.instance))
     if message is not None:
         wrong.append(_smallest(case, case.instance, on_graph, shrink_instance))

@@ -48,6 +48,8 @@ class RegionPair:
     Cells of both colors are merged as far as both colors continue. So, apart from cracks, edges
     remain only between merged cells of one color and merged cells of both.
 
+    The two colors differ.
+
     Attributes:
         first: what segments of the first region do to those of the second.
         second: what segments of the second region do to those of the first.
@@ -69,9 +71,8 @@ class RegionPair:
             sorted({self._merged.merged_cell_of[cell] for cell in cells})
             for cells in (near - far, far - near)
         ]
-        usable = color != other
-        self.first = Side(surface, alone[0], alone[1], ways[0], ways[1], usable)
-        self.second = Side(surface, alone[1], alone[0], ways[1], ways[0], usable)
+        self.first = Side(surface, alone[0], alone[1], ways[0], ways[1])
+        self.second = Side(surface, alone[1], alone[0], ways[1], ways[0])
 
     def merged_cell_of(self, cell: int) -> int:
         """The merged cell that a cell is part of; -1 for one of neither region."""
@@ -83,7 +84,11 @@ class Side:
 
     Attributes:
         merged_cells: the merged cells that belong to the one region and not to the other.
+
+    Args:
         parted: the merged cells that belong to the other region and not to the one.
+        own: the edges across which the one region goes on.
+        other: the same for the other region.
     """
 
     def __init__(
@@ -93,24 +98,16 @@ class Side:
         parted: list[int],
         own: set[int],
         other: set[int],
-        usable: bool,
     ) -> None:
         self.merged_cells = merged_cells
-        self.parted = parted
         self._surface = surface
-        self._number = {
-            merged_cell: number for number, merged_cell in enumerate(surface.merged.loops)
-        }
         self._own = self._with_seams(own, set(parted))
-        self._ways = [
-            (edge, *(self._number[merged_cell] for merged_cell in surface.sides[edge]))
-            for edge in sorted(self._with_seams(other, set(merged_cells)))
-        ]
-        self._wall: list[tuple[list[int], frozenset[int]]] = []
+        self._ways = sorted(self._with_seams(other, set(merged_cells)).items())
+        self._wall: list[list[int]] = []
         self._around: list[set[int]] = []
         self._tree: dict[int, tuple[int, int]] = {}
         self._known: dict[tuple[int, int], list[Parting]] = {}
-        if usable and len(merged_cells) > 1 and len(parted) > 1:
+        if len(merged_cells) > 1 and len(parted) > 1:
             self._tree = spanning_tree(self._own, merged_cells[:1])
             self._around = self._circles()
             if len(self._around) <= MOST_CIRCLES:
@@ -133,14 +130,14 @@ class Side:
         turns = self._turns(curves)
         cells = self._surface.cells
         found = []
-        for merged_cells, numbers in self._wall:
+        for merged_cells in self._wall:
             # Whatever is connected beside a curve in some class may be connected.
             together: UnionFind[int] = UnionFind(merged_cells)
             for chosen in range(1, 1 << len(curves), 2):
-                roots = self._reached(numbers, turns, chosen)
+                connected = self._connected(set(merged_cells), turns, chosen)
                 first: dict[int, int] = {}
                 for merged_cell in merged_cells:
-                    root = roots[2 * self._number[merged_cell]]
+                    root = connected[2 * merged_cell]
                     together.union(merged_cell, first.setdefault(root, merged_cell))
             if len(groups := together.sets()) > 1:
                 found.append(
@@ -189,30 +186,27 @@ class Side:
                 crossed[edge] = crossed.get(edge, 0) | 1 << number
         return self._surface.turns(crossed)
 
-    def _reached(self, wall: frozenset[int], turns: Mapping[int, int], chosen: int) -> list[int]:
-        """For twice a merged cell's number, plus a parity, what of the kind is connected with it.
+    def _connected(self, wall: set[int], turns: Mapping[int, int], chosen: int) -> UnionFind[int]:
+        """What ways connect, each merged cell in either parity: its name twice, plus the parity.
 
         Ways of the other region are followed, with the parity of their crossings with the chosen
         curves of the one region; merged cells of the wall may be passed in even parity only.
         """
-        connected = UnionFind(range(2 * len(self._number)))
-        for edge, left, right in self._ways:
+        connected: UnionFind[int] = UnionFind()
+        for edge, (left, right) in self._ways:
             turn = (turns[edge] & chosen).bit_count() % 2
             for parity in (0, 1):
                 across = parity ^ turn
                 if (parity and left in wall) or (across and right in wall):
                     continue
                 connected.union(2 * left + parity, 2 * right + across)
-        return [connected[node] for node in range(2 * len(self._number))]
+        return connected
 
-    def _components(
-        self, parted: list[int], other: set[int]
-    ) -> list[tuple[list[int], frozenset[int]]]:
+    def _components(self, parted: list[int], other: set[int]) -> list[list[int]]:
         """The components with two merged cells or more of all that the one region cannot pass.
 
         That is the merged cells of the other region alone, every edge that is not joinable for the
-        one, corners, and the border curves. Each component comes as its merged cells and their
-        numbers.
+        one, corners, and the border curves. Each component comes as its merged cells.
         """
         wall = self._surface.borders()
         for edge in other:
@@ -224,8 +218,4 @@ class Side:
         for merged_cell in parted:
             if loops[merged_cell]:
                 found.setdefault(wall[loops[merged_cell][0][0]], []).append(merged_cell)
-        return [
-            (merged_cells, frozenset(self._number[merged_cell] for merged_cell in merged_cells))
-            for merged_cells in found.values()
-            if len(merged_cells) > 1
-        ]
+        return [merged_cells for merged_cells in found.values() if len(merged_cells) > 1]
