@@ -84,8 +84,8 @@ def _verify(proof: Proof, parts: Sequence[CertifiedPart], value: int) -> None:
         tangles = [_tangle(proof, tangle) for tangle in part.tangles]
         pieces = part.value
         if part.hubs:
-            demands = _beside_hubs(proof, part)
-            pieces += _saved(proof, part)
+            demands, saved = _beside_hubs(proof, part)
+            pieces += saved
         left = proof.budget - proof.tried
         # Pieces beside hubs are counted; segments cost no less than their number.
         costs = None if part.hubs else proof.costs
@@ -102,24 +102,23 @@ def _verify(proof: Proof, parts: Sequence[CertifiedPart], value: int) -> None:
             raise Refused(f"{least} touch all of the cells {few(part.cells)}")
 
 
-def _beside_hubs(proof: Proof, part: CertifiedPart) -> dict[int, frozenset[ColorRegion]]:
-    """The color regions that are left of each cell to be touched when hubs are taken away."""
+def _beside_hubs(
+    proof: Proof, part: CertifiedPart
+) -> tuple[dict[int, frozenset[ColorRegion]], int]:
+    """The color regions that are left of each cell to be touched when hubs are taken away, and the
+    most segments that the hubs save, by their links."""
     if part.conflicts or part.tangles:
         raise Refused("a part with hubs has conflicts or tangles as well")
-    regions = Hubs(proof.instance, proof.regions, part.hubs).regions()
+    hubs = Hubs(proof.instance, proof.regions, part.hubs)
+    regions = hubs.regions()
     for cell in part.cells:
         if not regions[cell]:
             raise Refused(f"hub {cell} is to be touched")
-    return {cell: regions[cell] for cell in part.cells}
-
-
-def _saved(proof: Proof, part: CertifiedPart) -> int:
-    """The most segments that hubs save, by their links."""
-    hubs = Hubs(proof.instance, proof.regions, part.hubs)
     for hub in part.hubs:
         if problem := hubs.problem(hub):
             raise Refused(problem)
-    return sum(hubs.links(hub, proof.count) for hub in sorted(set(part.hubs)))
+    saved = sum(hubs.links(hub, proof.count) for hub in sorted(set(part.hubs)))
+    return {cell: regions[cell] for cell in part.cells}, saved
 
 
 def _conflicts(proof: Proof, part: CertifiedPart) -> Iterator[Conflict]:

@@ -281,42 +281,29 @@ class PlanSearch:
         numbers: dict[ColorRegion, list[int]] = defaultdict(list)
         for number, segment in enumerate(state.found):
             numbers[segment.region].append(number)
-        return {c: self._able(state.found, numbers, (first, second), c) for c in state.left}
+        found: dict[int, list[tuple[int, _Segment]]] = {}
+        for cell in state.left:
+            able = []
+            for region in self._regions[cell]:
+                more = self._ends.get((region, cell))
+                places = self._places.get((region, cell), 0)
+                for number in numbers.get(region, ()):
+                    segment = state.found[number]
+                    if more is None and not places:
+                        able.append((number, segment))
+                        continue
+                    grown = segment.grown(more or (0, 0, 0, 0), places)
+                    # A segment is of one region, so that it never is both segments of a conflict.
+                    if not (grown.connects[0] & second or grown.connects[1] & first):
+                        able.append((number, grown))
+            found[cell] = sorted(able, key=lambda choice: choice[0])
+        return found
 
     def _count(self, cells: int) -> None:
         """Count a choice among some cells; every fifty cells count as one more choice."""
         self.tried += 1 + cells // 50
         if self.tried > self._budget or self._deadline.over:
             raise BudgetExceeded
-
-    def _able(
-        self,
-        found: Sequence[_Segment],
-        numbers: Mapping[ColorRegion, list[int]],
-        connected: tuple[int, int],
-        cell: int,
-    ) -> list[tuple[int, _Segment]]:
-        """The numbers of the segments that can touch a cell too, and each as it is then.
-
-        Args:
-            numbers: those of the segments in each color region.
-            connected: bits of the conflicts whose first segment is found, and whose second is.
-        """
-        able = []
-        for region in self._regions[cell]:
-            more = self._ends.get((region, cell))
-            places = self._places.get((region, cell), 0)
-            for number in numbers.get(region, ()):
-                segment = found[number]
-                if more is None and not places:
-                    able.append((number, segment))
-                    continue
-                grown = segment.grown(more or (0, 0, 0, 0), places)
-                # A segment is of one region, so that it never is both segments of a conflict.
-                first, second = grown.connects
-                if not (first & connected[1] or second & connected[0]):
-                    able.append((number, grown))
-        return sorted(able, key=lambda choice: choice[0])
 
     def _need_segments_of_their_own(self, cells: Sequence[int]) -> int:
         """How many of the cells need a segment each: no two of them are in one color region.

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import SolverMissing, TooLarge
 from cellcolor.files.paths import shipped_folder
@@ -49,11 +48,6 @@ class ClingoSolver:
     abilities = Abilities()
 
     def __init__(self) -> None:
-        """Check that clingo can be imported.
-
-        Raises:
-            SolverMissing: it cannot.
-        """
         if find_spec("clingo") is None:
             raise SolverMissing("clingo", "pip install 'fewest-lift-offs[peers]'")
 
@@ -65,12 +59,6 @@ class ClingoSolver:
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
-        """A division with the fewest segments, or the best found before the deadline.
-
-        Raises:
-            InputError: a cell has several loops with live darts.
-            TooLarge: a cell has so many live darts that the model would not be written in time.
-        """
         from clingo import Control
 
         facts = asp_facts(instance)
@@ -112,7 +100,12 @@ class ClingoSolver:
             return Answer(None, (), (Bound("search", bounds[-1], "strands"),))
         segments, symbols = found[-1]
         bound = Bound("search", segments if complete else bounds[-1], "strands")
-        return Answer(_division(instance, symbols), (), (bound,))
+        color: dict[int, int] = {}
+        after: dict[int, int] = {}
+        for symbol in symbols:
+            first, second = (argument.number for argument in symbol.arguments)
+            (color if symbol.name == "joined" else after)[first] = second
+        return Answer(division_of_chains(instance, color, after), (), (bound,))
 
 
 def asp_facts(instance: Instance) -> str:
@@ -136,13 +129,3 @@ def asp_facts(instance: Instance) -> str:
             facts += [f"side({edge.id},{edge.id}).", f"side({edge.id},{-edge.id})."]
             facts += [f"joinable({edge.id},{color})." for color in colors]
     return "".join(f"{fact}\n" for fact in facts)
-
-
-def _division(instance: Instance, symbols: Sequence[Symbol]) -> Division:
-    """The division that an answer set describes."""
-    color: dict[int, int] = {}
-    after: dict[int, int] = {}
-    for symbol in symbols:
-        first, second = (argument.number for argument in symbol.arguments)
-        (color if symbol.name == "joined" else after)[first] = second
-    return division_of_chains(instance, color, after)

@@ -161,6 +161,10 @@ class Solver(Protocol):
         """A division with the fewest segments, or the best found before the deadline.
 
         With another objective (``Options.objective``) it is one that costs least.
+
+        Raises:
+            InputError: a cell has several live loops, and that is more than the solver can do.
+            TooLarge: its model would take too much memory or time to be written.
         """
 
 

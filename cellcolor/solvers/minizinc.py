@@ -120,11 +120,6 @@ class _MiniZinc:
     flags: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self) -> None:
-        """Check that MiniZinc is there and knows the solver.
-
-        Raises:
-            SolverMissing: it is not, or does not.
-        """
         if shutil.which("minizinc") is None or self._known is None:
             raise SolverMissing(self.name, self.how)
 
@@ -144,13 +139,7 @@ class _MiniZinc:
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
-        """A division with the fewest segments, or the best found before the deadline.
-
-        Raises:
-            InputError: a cell has several loops with live darts.
-            TooLarge: the model would have too many constraints.
-            CellcolorError: MiniZinc or the solver failed.
-        """
+        """As the interface says; a CellcolorError if MiniZinc or the solver fails."""
         data = minizinc_data(instance)
         best: Division | None = None
         complete, failure = False, None

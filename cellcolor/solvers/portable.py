@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
@@ -43,36 +44,30 @@ def _title(instance: Instance) -> str:
     return f"fewest segments of {name}, fingerprint {instance.sha256}"
 
 
-def _linear(lines: Callable[[Model, str], Iterator[str]]) -> Callable[[Instance], Iterator[str]]:
-    def write(instance: Instance) -> Iterator[str]:
-        return lines(Coloring(Seamed(instance).instance).model, _title(instance))
-
-    return write
+def _linear(lines: Callable[[Model, str], Iterator[str]], instance: Instance) -> Iterator[str]:
+    return lines(Coloring(Seamed(instance).instance).model, _title(instance))
 
 
-def _text(mark: str, text: Callable[[Instance], str]) -> Callable[[Instance], Iterator[str]]:
-    def write(instance: Instance) -> Iterator[str]:
-        body = text(Seamed(instance).instance)
-        return iter([f"{mark} cellcolor: {_title(instance)}", *body.splitlines()])
-
-    return write
+def _text(mark: str, text: Callable[[Instance], str], instance: Instance) -> Iterator[str]:
+    body = text(Seamed(instance).instance)
+    return iter([f"{mark} cellcolor: {_title(instance)}", *body.splitlines()])
 
 
 PORTABLE = {
     "opb": Portable(
-        "pseudo-Boolean solvers", rb"\* #variable=[^\n]*\n\* cellcolor: ", _linear(opb)
+        "pseudo-Boolean solvers", rb"\* #variable=[^\n]*\n\* cellcolor: ", partial(_linear, opb)
     ),
-    "wcnf": Portable("MaxSAT solvers", b"c cellcolor: ", _linear(wcnf)),
-    "mps": Portable("solvers of mixed-integer programs", rb"\* cellcolor: ", _linear(mps)),
+    "wcnf": Portable("MaxSAT solvers", b"c cellcolor: ", partial(_linear, wcnf)),
+    "mps": Portable("solvers of mixed-integer programs", rb"\* cellcolor: ", partial(_linear, mps)),
     "dzn": Portable(
         "the MiniZinc model (models/constraints/coloring.mzn)",
         b"% cellcolor: ",
-        _text("%", minizinc_data),
+        partial(_text, "%", minizinc_data),
     ),
     "lp": Portable(
         "the answer set program (models/constraints/coloring.lp)",
         b"% cellcolor: ",
-        _text("%", asp_facts),
+        partial(_text, "%", asp_facts),
     ),
 }
 """Each is the ending of its files as well."""

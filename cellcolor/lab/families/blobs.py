@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cellcolor.arrays import Array
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.lab.families.meshes import crack_paths, grid_faces
@@ -78,9 +78,7 @@ def blobs(
     )
 
 
-def _waves(
-    rng: np.random.Generator, x: NDArray[np.float64], y: NDArray[np.float64], frequency: float
-) -> NDArray[np.float64]:
+def _waves(rng: np.random.Generator, x: Array, y: Array, frequency: float) -> Array:
     """A smooth random field: a dozen plane waves of about the given frequency."""
     field = np.zeros_like(x)
     for _ in range(12):

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cellcolor.arrays import Array, Index
 from cellcolor.data.surface import Crack
 from cellcolor.errors import InputError
 
-Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
+Mesh = tuple[Array, Index]
 """Vertices, (n, 3) in metres, and faces, (m, 3), counter-clockwise seen from outside."""
 
 Topology = Literal["disc", "annulus", "sphere", "torus", "double torus"]
@@ -47,7 +47,7 @@ def make_mesh(shape: Topology, size: int) -> Mesh:
 
 def grid_faces(
     rows: int, columns: int, *, wrap_rows: bool = False, wrap_columns: bool = False
-) -> NDArray[np.int64]:
+) -> Index:
     """Two counter-clockwise triangles for each square of a grid, columns along x, rows along y."""
     row, column = np.mgrid[0 : rows - (not wrap_rows), 0 : columns - (not wrap_columns)]
     here, above = row.ravel() * columns, (row.ravel() + 1) % rows * columns
@@ -122,15 +122,13 @@ def _connected(mesh: Mesh) -> Mesh:
     return np.vstack([vertices, other])[used], renumbered.reshape(-1, 3).astype(np.int64)
 
 
-def _points(
-    x: NDArray[np.float64], y: NDArray[np.float64], z: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _points(x: Array, y: Array, z: Array) -> Array:
     return np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1).astype(np.float64)
 
 
 def crack_paths(
     rng: np.random.Generator,
-    faces: NDArray[np.int64],
+    faces: Index,
     vertex_colors: Sequence[tuple[int, ...]],
     count: int,
     length: int,

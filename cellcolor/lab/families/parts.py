@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cellcolor.arrays import Array, Mask
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.lab.families.meshes import sphere
@@ -30,7 +30,7 @@ class _Labels:
         cracked: the branches that are cracked along a mesh edge (i, j), i < j.
     """
 
-    reached: NDArray[np.bool_]
+    reached: Mask
     cracked: dict[Pair, set[int]]
 
 
@@ -55,22 +55,7 @@ def part(seed: int, cells: int = 1000, colors: int = 300) -> LabelledSurface:
         neighbors[a].append(b)
         neighbors[b].append(c)
         neighbors[c].append(a)
-    # Rough fields have many colors and cells of their own: calmer ones until there is room.
-    for creases in range(CREASES, -1, -1):
-        frequency = 0.3 * (cells / 400) ** 0.7 * 0.6 ** (CREASES - creases)
-        smooth = _Smooth(rng, vertices, neighbors, frequency, creases)
-        labels = next(
-            (
-                found
-                for found in map(smooth.labels, ROUGHNESS)
-                if _filled(rng, found, neighbors, cells, colors)
-            ),
-            None,
-        )
-        if labels is not None:
-            break
-    else:
-        raise InputError(None, None, f"no part has as few as {cells} cells, {colors} colors")
+    labels = _labels(rng, vertices, neighbors, cells, colors)
     names, sets = _colors(labels, neighbors)
     cracks = _cracks(labels, names, sets)
     return LabelledSurface(
@@ -84,13 +69,26 @@ def part(seed: int, cells: int = 1000, colors: int = 300) -> LabelledSurface:
     )
 
 
+def _labels(
+    rng: np.random.Generator, vertices: Array, neighbors: list[list[int]], cells: int, colors: int
+) -> _Labels:
+    """Rough fields have many colors and cells of their own: calmer ones until there is room."""
+    for creases in range(CREASES, -1, -1):
+        frequency = 0.3 * (cells / 400) ** 0.7 * 0.6 ** (CREASES - creases)
+        smooth = _Smooth(rng, vertices, neighbors, frequency, creases)
+        for labels in map(smooth.labels, ROUGHNESS):
+            if _filled(rng, labels, neighbors, cells, colors):
+                return labels
+    raise InputError(None, None, f"no part has as few as {cells} cells, {colors} colors")
+
+
 class _Smooth:
     """The smooth fields behind a part: of each branch, of the creases, of cracks along them."""
 
     def __init__(
         self,
         rng: np.random.Generator,
-        vertices: NDArray[np.float64],
+        vertices: Array,
         neighbors: list[list[int]],
         frequency: float,
         creases: int,
@@ -125,9 +123,7 @@ class _Smooth:
         return _Labels(fields >= np.array(least), cracked)
 
 
-def _field(
-    rng: np.random.Generator, points: NDArray[np.float64], frequency: float
-) -> NDArray[np.float64]:
+def _field(rng: np.random.Generator, points: Array, frequency: float) -> Array:
     """A smooth random field of variance 1 or nearly: a dozen plane waves."""
     waves = rng.normal(0.0, 2 * np.pi * frequency, (12, 3))
     phases = rng.uniform(0, 2 * np.pi, 12)

@@ -43,7 +43,7 @@ class ReferenceSolver:
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
-        """A division with the fewest segments, or the least cost, that the time limit allowed.
+        """The best division that the time limit allowed.
 
         In the search space ``surface`` it has the fewest segments that ``options.strands``
         corridors across each edge allow, and the lower bound is one that any division obeys.

@@ -247,11 +247,6 @@ class ChocoSolver:
     abilities = Abilities()
 
     def __init__(self) -> None:
-        """Check that Choco can be imported.
-
-        Raises:
-            SolverMissing: it cannot.
-        """
         if find_spec("pychoco") is None:
             raise SolverMissing("choco", "pip install 'fewest-lift-offs[peers]'")
 
@@ -263,14 +258,11 @@ class ChocoSolver:
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
-        """A division with the fewest segments, or the best found before the deadline.
+        """Choco searches from above and tells no bound of its own until it has proved the minimum.
 
-        Choco searches from above and tells no bound of its own until it has proved the minimum.
         Until then the bound is a number of cells of which no two lie in one color region.
 
         Raises:
-            InputError: a cell has several loops with live darts.
-            TooLarge: the model would not fit into memory.
             CellcolorError: Choco failed before it found a solution.
         """
         if not instance.cells:

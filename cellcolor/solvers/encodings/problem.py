@@ -22,7 +22,7 @@ LARGEST_MODEL = 6e5
 has up to twice as many terms as are estimated."""
 
 MANY_DARTS = 300
-"""In a cell with more darts, pairs of them are not counted one by one."""
+"""A cell with more darts makes a model too large; its pairs of darts are not even counted."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ class Problem:
     @property
     def size(self) -> float:
         """About how many terms a model has; most are in the constraints that prevent crossing."""
-        if sum(len(cell) ** 3 for cell in self.cells if len(cell) > MANY_DARTS) > 4 * LARGEST_MODEL:
-            return inf  # not worth counting
+        if any(len(cell) > MANY_DARTS for cell in self.cells):
+            return inf  # far too many
         place = {dart: number for cell in self.cells for number, dart in enumerate(cell)}
         return sum(4.0 * (place[other] - place[one]) + 8 for one, other in self.pairs())

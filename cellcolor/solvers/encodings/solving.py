@@ -189,12 +189,6 @@ class EncodingSolver:
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
-        """A division with the fewest segments, or the best found before the deadline.
-
-        Raises:
-            InputError: a cell has several loops with live darts.
-            TooLarge: the model would not fit into memory.
-        """
         try:
             problem = Problem.of(instance, options.deadline)
             built = self.encoding(problem, options.deadline)

@@ -41,11 +41,6 @@ class _Rival:
     called: ClassVar[str]
 
     def __init__(self) -> None:
-        """Check that the solver's package is there.
-
-        Raises:
-            SolverMissing: it is not.
-        """
         if find_spec(self.module) is None:
             raise SolverMissing(self.name, "pip install 'fewest-lift-offs[peers]'")
 
@@ -57,13 +52,7 @@ class _Rival:
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
-        """A division with the fewest segments, or the best found before the deadline.
-
-        Raises:
-            InputError: a cell has several loops with live darts.
-            TooLarge: the model would have too many literals.
-            CellcolorError: the solver failed before it found or proved anything.
-        """
+        """As the interface says; a CellcolorError if it fails before it has found anything."""
         if not instance.cells:
             return Answer((), (), ())
         coloring = Coloring(instance)
