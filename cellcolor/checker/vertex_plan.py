@@ -16,7 +16,7 @@ class PlanReport:
 
     Attributes:
         problems: what is wrong, each naming its vertex; none when the plan is valid.
-        segments: the number of segments counted, None when the plan is not valid.
+        segments: how many were counted, None when the plan is not valid.
         segment_of: the segment of each vertex, -1 where it has no color; numbered in the order of
             their first vertices. Empty when the plan is not valid.
         violations: those of the problems that are about a vertex.

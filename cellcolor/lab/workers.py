@@ -21,13 +21,7 @@ _Name = TypeVar("_Name")
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """One piece of work.
-
-    Attributes:
-        function: of a module that workers can import.
-        arguments: what can be pickled.
-        limits: of the process in which it is called.
-    """
+    """One piece of work: a function of a module that workers can import, what can be pickled."""
 
     function: Callable[..., Any]
     arguments: tuple[Any, ...]

@@ -193,8 +193,7 @@ def enumerate_schemes(
     """Every optimal scheme (docs/semantics.md, section 3), each once, as they are found.
 
     Args:
-        options: time limit and seed; the search space is ``paper``.
-        segments: the minimum.
+        segments: the minimum, in the search space ``paper``.
         known: a division to start from, for solvers that can.
         counted: told how many schemes there are as soon as the solver knows that.
         pool: not all, but up to a thousand, drawn at random where the solver has counted them.

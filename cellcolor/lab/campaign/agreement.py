@@ -175,17 +175,11 @@ _Front = tuple[tuple[int, int], ...]
 def fewest_by_vertices(surface: LabelledSurface, most_states: int) -> int | None:
     """The fewest connected components of equal color over all colorings of a mesh's vertices.
 
-    Vertices are painted one by one in their order; of all partial colorings that look alike from
-    the unpainted ones only the cheapest is kept. A coloring of the vertices is a division of the
-    surface, so no lower bound for the surface may exceed this; fewer may be possible where the
-    mesh is too coarse for a corridor.
-
-    Args:
-        surface: small, its vertices in an order with a short front, such as row by row.
-        most_states: give up if there are more partial colorings at a time.
-
-    Returns:
-        The minimum, None when given up.
+    Vertices are painted one by one in their order, which should have a short front, such as row by
+    row. Of all partial colorings that look alike from the unpainted ones only the cheapest is kept;
+    with more of them than ``most_states`` at a time the answer is None. A coloring of the vertices
+    is a division of the surface, so no lower bound for the surface may exceed this; fewer may be
+    possible where the mesh is too coarse for a corridor.
     """
     neighbors: dict[int, dict[int, set[int]]] = {
         vertex: {} for vertex, colors in enumerate(surface.vertex_colors) if colors

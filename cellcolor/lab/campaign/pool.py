@@ -31,14 +31,9 @@ KINDS = tuple(SMALL)
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One instance of a campaign.
+    """One instance of a campaign, made from the campaign's seed and its number in it.
 
-    Attributes:
-        seed: of the campaign.
-        number: within the campaign; with the seed it is all that this was made from.
-        kind: one of ``KINDS``.
-        instance: what to solve.
-        surface: the mesh behind it, None for abstract graphs.
+    The kind is one of ``KINDS``, the surface the mesh behind it, None for abstract graphs.
     """
 
     seed: int
@@ -72,12 +67,7 @@ _SOLVES = 10
 
 @dataclass(frozen=True, slots=True)
 class Wrong:
-    """A disagreement, made small.
-
-    Attributes:
-        message: who says what, of the small one.
-        document: the text of its file, an instance or a labelled surface.
-    """
+    """A disagreement, made small: who says what of it, and its file."""
 
     message: str
     document: str
@@ -88,14 +78,10 @@ class Outcome:
     """What came of one instance.
 
     Attributes:
-        number: within the campaign.
-        kind: the family it is from.
-        cells: how many it has.
         darts: the most live darts that one of its cells has.
         finding: what the solvers agree on, None when they do not.
         mesh: what a search over the vertices says, None without one.
         wrong: the disagreements.
-        seconds: for all of it.
     """
 
     number: int

@@ -61,13 +61,9 @@ SETS: Mapping[str, Mapping[str, Family]] = {
 
 @dataclass(frozen=True, slots=True)
 class Specimen:
-    """An instance that is made when its turn comes.
+    """An instance that is made when its turn comes, which may raise a CellcolorError.
 
-    Attributes:
-        family: what it is from.
-        seed: within the family, None for a file.
-        name: for messages.
-        make: makes it, and may raise a :class:`~cellcolor.errors.CellcolorError`.
+    It is from a family with a seed, None for a file; the name is for messages.
     """
 
     family: str
@@ -162,11 +158,8 @@ class Experiment:
     """Which runs to make.
 
     Attributes:
-        subjects: the instances, in their order.
-        contestants: who solves each of them.
         limits: seconds for each solve, one limit or several.
         repetitions: of each run, with other random numbers in the solver.
-        search_space: where to search.
         megabytes: of memory for each run.
         command: that asked for them, for the record.
     """

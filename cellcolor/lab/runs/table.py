@@ -35,12 +35,9 @@ def header_of(path: str | PathLike[str], kinds: Sequence[type[Any]]) -> type[Any
 
 
 def read_table(path: str | PathLike[str], kind: type[_R]) -> list[_R]:
-    """The rows of a file.
+    """The rows of a file; the fields of their dataclass are the columns.
 
     A last line that does not end was cut off while it was written, and is left out.
-
-    Args:
-        kind: a dataclass; its fields are the columns.
 
     Raises:
         InputError: the file cannot be read, or is no such table.
@@ -61,9 +58,6 @@ class TableFile(Generic[_R]):
 
     Attributes:
         rows: all there are, those of earlier sessions first.
-
-    Args:
-        kind: a dataclass; its fields are the columns.
 
     Raises:
         InputError: the file cannot be used, is another table, or is being written to.

@@ -229,10 +229,9 @@ MOST_HUBS = 200
 
 @dataclass(frozen=True, slots=True)
 class HubBound:
-    """No division of the surface has fewer segments.
+    """No division of the surface has fewer segments than ``len(cells)`` less the hubs' links.
 
     Attributes:
-        value: so many, ``len(cells)`` less the links of the hubs.
         hubs: the removed cells; no two of them share a live edge.
         cells: no two of them lie in one color region of the rest.
     """

@@ -72,21 +72,13 @@ def left_out(
 
 
 def enough_crossings(instance: Instance, colors: Sequence[frozenset[int]]) -> dict[int, float]:
-    """How many strands of each live edge suffice for a minimum over all divisions.
+    """How many strands of each live edge suffice for a minimum over all divisions, or infinity.
 
-    Among all divisions of the surface with the fewest segments, take one with the fewest
-    sub-cells, and a spanning tree of each segment. Then (docs/bounds.md, "Crossing an edge twice")
-
-    - Where the trees cross one edge several times, successive crossings have different colors. So
-      an edge with a single joinable color is crossed at most once.
-    - Suppose that the trees cross an edge m > 1 times. Then on either side there are m different
-      sub-cells, and each of them crosses some other edge of its cell, too. So on either side m is
-      at most the sum of the crossings of the cell's other edges.
-
-    The second point is applied until nothing changes. It says nothing about a side whose cell has
-    several live loops, nor about edges with the same cell on both sides.
-
-    A number for every live edge, infinity if no limit is known.
+    An edge with a single joinable color is crossed at most once. If it is crossed m > 1 times, then
+    on either side m different sub-cells cross some other edge of their cell, too: m is at most the
+    sum of the crossings of the cell's other edges (docs/bounds.md, "Crossing an edge twice"). This
+    is applied until nothing changes. It says nothing about a side whose cell has several live
+    loops, nor about edges with the same cell on both sides.
 
     Args:
         colors: the colors each cell may be painted in, all or some of its own.
