@@ -7,6 +7,8 @@ degrees are refused where a table is read (:mod:`cellcolor.frontend.tables`).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from cellcolor.data.wording import in_meters, looks_like_millimeters
@@ -70,17 +72,10 @@ def check_setup(setup: Setup, part: Surface, scene: Scene, reach: float) -> None
     Raises:
         InputError: names the key, and what was probably meant.
     """
-    _no_larger_than_part(
-        {
-            "task.contact_radius_m": setup.task.contact_radius_m,
-            "continuity.probe_spacing_m": setup.continuity.probe_spacing_m,
-            "continuity.validity_spacing_m": setup.continuity.validity_spacing_m,
-            "continuity.border_length_m": setup.continuity.border_length_m,
-        },
-        part,
-        scene,
-        reach,
-    )
+    spacings = ("probe_spacing_m", "validity_spacing_m", "border_length_m")
+    lengths = {"task.contact_radius_m": setup.task.contact_radius_m}
+    lengths |= {f"continuity.{name}": getattr(setup.continuity, name) for name in spacings}
+    _no_larger_than_part(lengths, part, scene, reach)
     margins = {f"margins.{name}": value for name, value in setup.margins.model_dump().items()}
     _within_reach(margins, reach)
 
@@ -91,18 +86,14 @@ def check_motion(motion: Motion, part: Surface, scene: Scene, reach: float) -> N
     Raises:
         InputError: names the key, and what was probably meant.
     """
-    _no_larger_than_part(
-        {"motion.tool_radius_m": motion.tool_radius_m, "motion.spacing_m": motion.spacing_m},
-        part,
-        scene,
-        reach,
-    )
+    widths = {"motion.tool_radius_m": motion.tool_radius_m, "motion.spacing_m": motion.spacing_m}
+    _no_larger_than_part(widths, part, scene, reach)
     lengths = {"motion.retract_m": motion.retract_m, "motion.clearance_m": motion.clearance_m}
     _within_reach(lengths, reach)
 
 
 def _no_larger_than_part(
-    lengths: dict[str, float | None], part: Surface, scene: Scene, reach: float
+    lengths: Mapping[str, float | None], part: Surface, scene: Scene, reach: float
 ) -> None:
     largest = float(np.linalg.norm(np.ptp(part.vertices, axis=0)))
     for field, length in lengths.items():

@@ -77,15 +77,13 @@ def mesh_bodies(
     if chosen == "capsules":
         capsules = capsules_around(vertices, faces)
         bodies = tuple(Body(link, joint, *capsule, flat=False) for capsule in capsules)
-        return StandIn(link, file, chosen, vertices, faces, bodies)
-    solid: Polyhedron | None = Polyhedron(vertices, faces)
-    if chosen == "hull":
-        solid = convex_hull(vertices)
+    else:
+        solid = convex_hull(vertices) if chosen == "hull" else Polyhedron(vertices, faces)
         if solid is None:
             message = "the mesh lies in a plane, so it has no hull: choose 'exact' for its link"
             raise InputError(str(file), None, message)
-    assert solid is not None
-    return StandIn(link, file, chosen, vertices, faces, (_polyhedral(link, joint, solid),))
+        bodies = (_polyhedral(link, joint, solid),)
+    return StandIn(link, file, chosen, vertices, faces, bodies)
 
 
 def _polyhedral(link: str, joint: int, solid: Polyhedron) -> Body:

@@ -25,38 +25,40 @@ class Poses:
     """Where everything is: frame 0 is the world, frame i the one behind joint i.
 
     Attributes:
-        rotation: (n, joints + 1, 3, 3).
-        origin: (n, joints + 1, 3) in m.
+        body_rotation, body_origin: (n, frames, 3, 3), and (n, frames, 3) in m, of all frames that
+            bodies hang on; behind those of the joints are those of followers, if there are any.
         axis: (n, joints, 3) joint axes.
         tip: (n, 3) tool tip in m.
         tool_axis: (n, 3) the tool's z axis, from the flange to the tip.
         slides: (joints,) which joints are prismatic.
-        body_rotation, body_origin: of all frames that bodies hang on: the same, and after them
-            those of followers, if there are any.
     """
 
-    rotation: Array
-    origin: Array
+    body_rotation: Array
+    body_origin: Array
     axis: Array
     tip: Array
     tool_axis: Array
     slides: Mask
-    body_rotation: Array
-    body_origin: Array
+
+    @property
+    def rotation(self) -> Array:
+        """(n, joints + 1, 3, 3)."""
+        return self.body_rotation[:, : self.axis.shape[1] + 1]
+
+    @property
+    def origin(self) -> Array:
+        """(n, joints + 1, 3) in m."""
+        return self.body_origin[:, : self.axis.shape[1] + 1]
 
     def take(self, rows: NDArray[np.intp]) -> Poses:
         """The poses of some of the configurations."""
-        frames = self.axis.shape[1] + 1
-        rotation, origin = self.body_rotation[rows], self.body_origin[rows]
         return Poses(
-            rotation=rotation[:, :frames],
-            origin=origin[:, :frames],
-            axis=self.axis[rows],
-            tip=self.tip[rows],
-            tool_axis=self.tool_axis[rows],
-            slides=self.slides,
-            body_rotation=rotation,
-            body_origin=origin,
+            self.body_rotation[rows],
+            self.body_origin[rows],
+            self.axis[rows],
+            self.tip[rows],
+            self.tool_axis[rows],
+            self.slides,
         )
 
 
@@ -115,7 +117,7 @@ def forward(robot: Robot, configurations: Array) -> Poses:
         all_origins[:, frame] = all_origins[:, follower.parent] + np.einsum(
             "nab,nb->na", carrier, shift
         )
-    return Poses(rotation, origin, axis, tip, tool_axis, robot.slides, all_rotations, all_origins)
+    return Poses(all_rotations, all_origins, axis, tip, tool_axis, robot.slides)
 
 
 def turned(rotation: Array, columns: Array) -> Array:

@@ -27,6 +27,9 @@ from cellcolor.frontend.parts.shapes import grid_mesh
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.tables import Length, Positive, Registry
 
+Shell = tuple[Array, Faces]
+"""Vertices (n, 3) in m and faces (m, 3)."""
+
 
 class Obstacle(Placement):
     """A thing that neither the arm nor the tool may touch, and its place.
@@ -36,8 +39,8 @@ class Obstacle(Placement):
     """
 
     @abstractmethod
-    def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> tuple[Array, Faces]:
-        """The obstacle's outside in its own frame: vertices (n, 3) in m and faces (m, 3).
+    def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shell:
+        """The obstacle's outside in its own frame.
 
         Pictures show it, and the arm is tested against it, unless :meth:`solid` says otherwise.
 
@@ -61,7 +64,7 @@ class MeshObstacle(Obstacle):
     file: str
     meters_per_unit: Positive
 
-    def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> tuple[Array, Faces]:
+    def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shell:
         """The file's mesh."""
         mesh = load_mesh(folder / self.file, self.meters_per_unit, deadline=deadline)
         return mesh.vertices, mesh.faces
@@ -82,11 +85,7 @@ class Primitive(Obstacle):
     def _mesh(self) -> trimesh.Trimesh:
         """The shape for pictures."""
 
-    def shell(
-        self,
-        folder: Path = Path(),  # noqa: ARG002
-        deadline: Deadline = NEVER,  # noqa: ARG002
-    ) -> tuple[Array, Faces]:
+    def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shell:  # noqa: ARG002
         """The shape with its curved faces as many flat ones."""
         mesh = self._mesh()
         return np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)
@@ -216,11 +215,7 @@ class HalfSpaceObstacle(Obstacle):
 
     kind: Literal["half-space"] = "half-space"
 
-    def shell(
-        self,
-        folder: Path = Path(),  # noqa: ARG002
-        deadline: Deadline = NEVER,  # noqa: ARG002
-    ) -> tuple[Array, Faces]:
+    def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shell:  # noqa: ARG002
         """What pictures show: a square of the plane, 2 m wide, about the position."""
         flat, faces = grid_mesh(_DRAWN, _DRAWN, _VERTICES, 0.0, 0)
         return np.column_stack([flat - _DRAWN / 2, np.zeros(len(flat))]), faces
@@ -302,7 +297,7 @@ class BoxGridObstacle(Obstacle):
             raise InputError(str(path), None, "has no cell")
         return np.unique(np.array(rows, dtype=np.int64), axis=0)
 
-    def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> tuple[Array, Faces]:
+    def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shell:
         """The sides of cells that have no cell beyond them, each as two triangles."""
         cells = self.cells(folder, deadline)
         outer = _outer_sides(cells)

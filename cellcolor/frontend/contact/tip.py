@@ -7,8 +7,6 @@ only on the tool's pose, whatever the arm does.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from cellcolor.arrays import Array, Mask, numbered
@@ -35,11 +33,11 @@ class Tip:
         """``radius`` in m, and the ground if there is one."""
         point, axis = robot.tip[:3, 3], robot.tip[:3, 2]
         # How far behind the tip the axis of each body on the last link begins, or a solid itself.
-        behind = [
-            min(float((point - end) @ axis) for end in _ends(body))
-            for body in robot.bodies
-            if body.joint == robot.joints
-        ]
+        behind = []
+        for body in robot.bodies:
+            if body.joint == robot.joints:
+                ends = [body.start, body.end] if body.solid is None else body.solid.outline
+                behind.append(float(((point - ends) @ axis).min()))
         length = max(min(behind, default=0.0), 0.0)
         self.body = Body("tool tip", robot.joints, point, point - length * axis, radius, flat=False)
         self._obstacles, self._ground = obstacles, ground
@@ -84,8 +82,3 @@ class Tip:
             points, directions = along_edges(surface, edges[row], number / pieces[part][which])
             free[row[self.blocked(points, directions)]] = False
         return free
-
-
-def _ends(body: Body) -> Iterable[Array]:
-    """The ends (3,) of the body's axis, or the corners of its solid."""
-    return (body.start, body.end) if body.solid is None else body.solid.outline
