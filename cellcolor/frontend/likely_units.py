@@ -1,8 +1,9 @@
 """Millimeters taken for meters: found by comparing lengths with the arm and the part.
 
 Every length of a scene and its setup is in meters. One that only makes sense in millimeters is
-refused, with the value that was probably meant, before anything is computed with it. Angles in
-degrees are refused where a table is read (:mod:`cellcolor.frontend.tables`).
+refused by an :class:`~cellcolor.errors.InputError` that names the key and what was probably meant,
+before anything is computed with it. Angles in degrees are refused where a table is read
+(:mod:`cellcolor.frontend.tables`).
 """
 
 from __future__ import annotations
@@ -29,9 +30,6 @@ def check_part(part: Surface, scene: Scene, reach: float) -> None:
         part: in the world, m.
         scene: that it is from.
         reach: of the arm, m.
-
-    Raises:
-        InputError: names the key, the size or distance, and what was probably meant.
     """
     largest = float(np.ptp(part.vertices, axis=0).max())
     if largest > _REACHES * reach:
@@ -67,11 +65,7 @@ def _unit_of(scene: Scene) -> tuple[str, str]:
 
 
 def check_setup(setup: Setup, part: Surface, scene: Scene, reach: float) -> None:
-    """Reject lengths of a setup that are larger than the part, or margins beyond the arm's reach.
-
-    Raises:
-        InputError: names the key, and what was probably meant.
-    """
+    """Reject lengths of a setup that exceed the part, or margins beyond the arm's reach."""
     spacings = ("probe_spacing_m", "validity_spacing_m", "border_length_m")
     lengths = {"task.contact_radius_m": setup.task.contact_radius_m}
     lengths |= {f"continuity.{name}": getattr(setup.continuity, name) for name in spacings}
@@ -81,11 +75,7 @@ def check_setup(setup: Setup, part: Surface, scene: Scene, reach: float) -> None
 
 
 def check_motion(motion: Motion, part: Surface, scene: Scene, reach: float) -> None:
-    """Reject lengths of the table ``[motion]`` in the same way.
-
-    Raises:
-        InputError: names the key, and what was probably meant.
-    """
+    """Reject lengths of the table ``[motion]`` in the same way."""
     widths = {"motion.tool_radius_m": motion.tool_radius_m, "motion.spacing_m": motion.spacing_m}
     _no_larger_than_part(widths, part, scene, reach)
     lengths = {"motion.retract_m": motion.retract_m, "motion.clearance_m": motion.clearance_m}

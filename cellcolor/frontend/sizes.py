@@ -1,6 +1,7 @@
 """How large a build may get, asked before memory is spent on it.
 
-A build keeps some kilobytes for each vertex. The limits are chosen so that 4 GiB are enough; units
+Each check raises an :class:`~cellcolor.errors.InputError` that names the key and the numbers. A
+build keeps some kilobytes for each vertex. The limits are chosen so that 4 GiB are enough; units
 read wrongly and spacings far too fine are the usual ways past them.
 """
 
@@ -18,21 +19,13 @@ _MOST_AROUND = 200_000_000  # faces around vertices; some microseconds each
 
 
 def check_vertices(count: int, field: str | None = None) -> None:
-    """Refuse a mesh with too many vertices.
-
-    Raises:
-        InputError: names the field and both numbers.
-    """
+    """Refuse a mesh with too many vertices."""
     if count > MOST_VERTICES:
         raise InputError(None, field, f"has {count:,} vertices, at most {MOST_VERTICES:,} fit")
 
 
 def check_turns(vertices: int, turns: int) -> None:
-    """Refuse more turns of the tool than fit into memory with this many vertices.
-
-    Raises:
-        InputError: names the key and the numbers.
-    """
+    """Refuse more turns of the tool than fit into memory with this many vertices."""
     if vertices * turns > MOST_VERTICES:
         message = f"{turns} turns on {vertices:,} vertices are more than {MOST_VERTICES:,} together"
         raise InputError(None, "task.turn", message)
@@ -42,9 +35,6 @@ def check_faces(count: int) -> None:
     """Refuse a mesh with more faces than one with as many vertices as fit can have.
 
     It has two for each vertex, and a few more if it has handles.
-
-    Raises:
-        InputError: names both numbers.
     """
     if count > 3 * MOST_VERTICES:
         raise InputError(
@@ -63,9 +53,6 @@ def check_refinement(vertices: int, lengths: Array, area: float, longest: float)
         lengths: (k,) of its edges.
         area: of its faces.
         longest: what no edge may exceed, in the unit of the lengths.
-
-    Raises:
-        InputError: names ``max_edge_m`` and the numbers.
     """
     on_edges = vertices + float(np.ceil(lengths / longest - 1).sum())
     on_faces = area / (np.sqrt(3) / 4 * longest**2) / 2
@@ -86,9 +73,6 @@ def check_points(lengths: Array, spacing: float, field: str) -> None:
         lengths: (k,) of the edges, m.
         spacing: between points, m.
         field: the key that says so.
-
-    Raises:
-        InputError: names the key and the numbers.
     """
     counts = np.ceil(lengths / spacing)
     total = float(counts.sum())
@@ -102,11 +86,7 @@ def check_points(lengths: Array, spacing: float, field: str) -> None:
 
 
 def check_rounding(vertices: int, faces: float) -> None:
-    """Refuse to round normals over a radius that holds too many triangles.
-
-    Raises:
-        InputError: names the key and the numbers.
-    """
+    """Refuse to round normals over a radius that holds too many triangles."""
     if vertices * faces > _MOST_AROUND:
         raise InputError(
             None,
