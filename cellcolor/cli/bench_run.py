@@ -23,8 +23,8 @@ from cellcolor.data.solution import SearchSpace
 from cellcolor.data.wording import count
 from cellcolor.door.shipped import find_file, library
 from cellcolor.errors import CellcolorError, InputError, SolverMissing
-from cellcolor.lab.runs.row import Row, disagreements
-from cellcolor.lab.runs.statistics import by, contestants_of, median_seconds
+from cellcolor.lab.runs.row import Row, by, disagreements
+from cellcolor.lab.runs.statistics import contestants_of, median_seconds
 from cellcolor.lab.runs.sweep import (
     Contestant,
     Experiment,

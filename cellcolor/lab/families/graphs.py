@@ -34,7 +34,8 @@ def planar_graph(
     for number in range(1, edges + 1):
         if number < cells:
             left, right = rng.randrange(number), number
-            rotation.insert(number, left, rotation.any_dart(rng, left))
+            before = rotation.darts.get(left)
+            rotation.insert(number, left, rng.choice(before) if before else None)
             rotation.insert(-number, right, None)
         else:
             ends = rotation.corners_to_join(rng, self_edges)
@@ -71,11 +72,6 @@ class _Rotation:
         darts = self.darts.setdefault(cell, [])
         darts.insert(0 if after is None else darts.index(after) + 1, dart)
         self._cell[dart] = cell
-
-    def any_dart(self, rng: random.Random, cell: int) -> int | None:
-        """A random dart of a cell, None if it has none yet."""
-        darts = self.darts.get(cell)
-        return rng.choice(darts) if darts else None
 
     def corners_to_join(
         self, rng: random.Random, self_edges: bool

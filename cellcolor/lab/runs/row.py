@@ -5,14 +5,16 @@ No solver may beat what another one has proved.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import defaultdict
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from itertools import groupby
-from typing import Literal
+from typing import Literal, TypeVar
 
 from pydantic import ConfigDict
 
 from cellcolor.data.solution import SearchSpace
+
+_K = TypeVar("_K")
 
 Status = Literal[
     "optimal",
@@ -145,10 +147,13 @@ def compared(rows: Iterable[Row]) -> int:
     )
 
 
-def _by_instance(rows: Iterable[Row]) -> list[list[Row]]:
-    """The runs on the same instance in the same search space."""
+def by(rows: Iterable[Row], key: Callable[[Row], _K]) -> dict[_K, list[Row]]:
+    """The rows of each kind, kinds in the order in which they come."""
+    found: dict[_K, list[Row]] = defaultdict(list)
+    for row in rows:
+        found[key(row)].append(row)
+    return dict(found)
 
-    def same(row: Row) -> tuple[str, str]:
-        return row.sha256, row.search_space
 
-    return [list(own) for _, own in groupby(sorted(rows, key=same), same)]
+def _by_instance(rows: Iterable[Row]) -> Iterable[list[Row]]:
+    return by(rows, lambda row: (row.sha256, row.search_space)).values()

@@ -3,28 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from itertools import chain
 from statistics import fmean, median
-from typing import TypeVar
 
 from cellcolor.data.plot import Curve, Plot
-from cellcolor.lab.runs.row import Row
+from cellcolor.lab.runs.row import Row, by
 from cellcolor.solvers.registry import DEFAULT
 
 _NOISE = 0.01
 """Seconds. Shorter times are not distinguished: they would measure the clock, not the solver."""
-
-_K = TypeVar("_K")
-
-
-def by(rows: Iterable[Row], key: Callable[[Row], _K]) -> dict[_K, list[Row]]:
-    """The rows of each kind, kinds in the order in which they come."""
-    found: dict[_K, list[Row]] = defaultdict(list)
-    for row in rows:
-        found[key(row)].append(row)
-    return dict(found)
 
 
 def contestants_of(rows: Iterable[Row]) -> list[str]:

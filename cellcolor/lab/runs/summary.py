@@ -7,9 +7,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from statistics import median
 
 from cellcolor.data.wording import count
-from cellcolor.lab.runs.row import FINISHED, Row, compared, disagreements
+from cellcolor.lab.runs.row import FINISHED, Row, by, compared, disagreements
 from cellcolor.lab.runs.statistics import (
-    by,
     common,
     contestants_of,
     median_seconds,

@@ -5,7 +5,6 @@ The polygons are glued along edges; curves on the surface are compared up to hom
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
 
@@ -165,7 +164,7 @@ class PolygonSurface:
     def __init__(self, merged: MergedCells) -> None:
         self.merged = merged
         self.cells = merged.cells()
-        self.following: dict[int, int] = {}
+        self.before: dict[int, int] = {}
         self.polygons: dict[int, list[int]] = {}
         self.sides = dict(merged.sides)
         self.seams: dict[int, list[int]] = {}
@@ -174,15 +173,14 @@ class PolygonSurface:
             self.polygons[merged_cell] = [*loops[0]] if loops else []
             self.seams[merged_cell] = []
             for loop in loops:
-                self.following |= zip(loop, loop[1:] + loop[:1], strict=True)
+                self.before |= zip(loop[1:] + loop[:1], loop, strict=True)
             for loop in loops[1:]:
                 highest += 1
                 self.polygons[merged_cell] += [highest, *loop, -highest]
                 self.sides[highest] = merged_cell, merged_cell
                 self.seams[merged_cell].append(highest)
-        self.before = {following: dart for dart, following in self.following.items()}
-        self._borders: UnionFind[int] = UnionFind(self.following)
-        for dart in self.following:
+        self._borders: UnionFind[int] = UnionFind(self.before)
+        for dart in self.before:
             # Where a dart ends, the border continues to what lies before the dart's other side.
             self._borders.union(dart, self.before[-dart])
 
@@ -265,11 +263,10 @@ def spanning_tree(
         if root in tree:
             continue
         tree[root] = 0, root
-        queue = deque([root])
-        while queue:
-            node = queue.popleft()
+        order = [root]
+        for node in order:
             for edge, beyond in near.get(node, ()):
                 if beyond not in tree:
                     tree[beyond] = edge, node
-                    queue.append(beyond)
+                    order.append(beyond)
     return tree
