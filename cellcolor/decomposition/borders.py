@@ -9,6 +9,7 @@ mesh itself is closed with a virtual vertex outside, so that every mesh edge has
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from cellcolor.data.cells_and_edges import OUTSIDE
@@ -62,21 +63,23 @@ class Borders:
     """All borders of a division of the mesh into areas.
 
     Args:
-        mesh: its mesh, the holes closed.
-        cell_of: the cell of each vertex, virtual ones included; ``OUTSIDE`` where unreachable.
+        vertex_cell: the cell of each vertex; ``OUTSIDE`` where unreachable.
 
     Attributes:
+        mesh: the surface's mesh, the holes closed.
+        cell_of: the cell of each vertex, those of virtual ones ``OUTSIDE``.
         steps: all mesh edges that a border crosses, each in both directions.
     """
 
-    def __init__(self, surface: LabelledSurface, mesh: ClosedMesh, cell_of: list[int]) -> None:
-        self._mesh = mesh
-        self._cell_of = cell_of
+    def __init__(self, surface: LabelledSurface, vertex_cell: Sequence[int]) -> None:
+        self.mesh = ClosedMesh(surface)
+        virtual = self.mesh.vertex_count - self.mesh.real_count
+        self.cell_of = cell_of = [*vertex_cell, *[OUTSIDE] * virtual]
         self._cracked = surface.cracked
         self._colors = [frozenset(colors) for colors in surface.vertex_colors]
-        self._colors += [frozenset()] * (mesh.vertex_count - mesh.real_count)
+        self._colors += [frozenset()] * virtual
         self.steps: set[Step] = {
-            (a, b) for a, b in mesh.third if cell_of[a] != cell_of[b] or surface.cracked(a, b)
+            (a, b) for a, b in self.mesh.third if cell_of[a] != cell_of[b] or surface.cracked(a, b)
         }
 
     def joinable(self, a: int, b: int) -> frozenset[int]:
@@ -86,7 +89,7 @@ class Borders:
     def following(self, step: Step) -> Step:
         """The next step of a walk along the border with the same area on the left."""
         u, v = step
-        w = self._mesh.third[u, v]
+        w = self.mesh.third[u, v]
         if (u, w) in self.steps:
             return u, w
         if (w, v) in self.steps:
@@ -96,13 +99,13 @@ class Borders:
     def ends_in_corner(self, step: Step) -> bool:
         """Whether a step leads into a triangle that holds a corner of the border."""
         u, v = step
-        w = self._mesh.third[u, v]
+        w = self.mesh.third[u, v]
         crossed = 1 + ((u, w) in self.steps) + ((w, v) in self.steps)
         return crossed != 2 or self._kind(step) != self._kind(self.following(step))
 
     def _kind(self, step: Step) -> tuple[int, int, frozenset[int]]:
         u, v = step
-        return self._cell_of[u], self._cell_of[v], self.joinable(u, v)
+        return self.cell_of[u], self.cell_of[v], self.joinable(u, v)
 
     def curves(self, deadline: Deadline = NEVER) -> list[Curve]:
         """The topological edges, each with an area other than ``OUTSIDE`` on its left."""
@@ -112,7 +115,7 @@ class Borders:
         starts = sorted(self.steps)
         corners = [step for step in deadline.watch(starts) if self.ends_in_corner(step[::-1])]
         for first in deadline.watch(corners + starts):
-            if first in done or self._cell_of[first[0]] == OUTSIDE:
+            if first in done or self.cell_of[first[0]] == OUTSIDE:
                 continue
             steps = [first]
             while not self.ends_in_corner(steps[-1]):

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import PurePath
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cellcolor.arrays import Array, Index
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.instance import Instance, SurfaceReference
 from cellcolor.data.surface import LabelledSurface
@@ -40,21 +41,19 @@ def decomposition_of(
         InputError: a cell is not planar (its genus is not 0).
     """
     deadline.check()
-    mesh = ClosedMesh(surface)
-    cell_of, firsts = _cells(surface, mesh, deadline)
-    borders = Borders(surface, mesh, cell_of)
+    vertex_cell, firsts = pieces_of(surface, surface.vertex_colors, (), deadline)
+    borders = Borders(surface, vertex_cell)
+    cell_of = borders.cell_of
     curves = borders.curves(deadline)
-    loops = loops_of(borders, curves, cell_of, deadline)
-    _check_planar(surface, cell_of, firsts, borders, loops, deadline)
-
-    measure = _DualMeasure(surface, mesh)
-    areas = measure.areas(cell_of)
+    loops = loops_of(borders, curves, deadline)
+    _check_planar(surface, firsts, borders, loops, deadline)
+    areas = _areas(surface, vertex_cell)
     cells = tuple(
         Cell(number, surface.vertex_colors[first], loops.get(number, ()), areas[number])
         for number, first in enumerate(firsts)
     )
     edges = []
-    lengths = measure.lengths(curves)
+    lengths = _lengths(surface, borders.mesh, curves)
     for number, (curve, length) in enumerate(zip(curves, lengths, strict=True), start=1):
         left, right = curve.steps[0]
         colors = None
@@ -62,10 +61,9 @@ def decomposition_of(
             colors = tuple(sorted(borders.joinable(left, right)))
         edges.append(Edge(number, cell_of[left], cell_of[right], colors, length))
     deadline.check()
-    vertex_cell = tuple(cell_of[: mesh.real_count])
     reference = None
     if path is not None:
-        reference = SurfaceReference(str(path), vertex_cell, surface.sha256)
+        reference = SurfaceReference(str(path), tuple(vertex_cell), surface.sha256)
     instance = Instance(
         surface.name,
         surface.colors,
@@ -75,41 +73,40 @@ def decomposition_of(
         reference,
         coverage=surface.coverage,
     )
-    return Decomposition(instance, dict(enumerate(curves, start=1)), vertex_cell)
+    return Decomposition(instance, dict(enumerate(curves, start=1)), tuple(vertex_cell))
 
 
-def _cells(
-    surface: LabelledSurface,
-    mesh: ClosedMesh,
-    deadline: Deadline,
+def pieces_of(
+    surface: LabelledSurface, labels: Sequence[object], unreached: object, deadline: Deadline
 ) -> tuple[list[int], list[int]]:
-    """The cell of each vertex, and the smallest vertex of each cell.
+    """The piece of each vertex, and the smallest vertex of each piece.
 
-    A cell has equal color sets and is connected over mesh edges without a crack.
+    A piece has equal labels (n,) and is connected over mesh edges without a crack. Vertices that
+    are labelled ``unreached`` are ``OUTSIDE``.
     """
-    cell_of = [OUTSIDE] * mesh.vertex_count
-    neighbours: list[list[int]] = [[] for _ in range(mesh.real_count)]
+    piece_of = [OUTSIDE] * len(labels)
+    neighbours: list[list[int]] = [[] for _ in labels]
     for a, b in deadline.watch(surface.left_of):
-        if surface.vertex_colors[a] == surface.vertex_colors[b] and not surface.cracked(a, b):
+        if labels[a] == labels[b] and not surface.cracked(a, b):
             neighbours[a].append(b)
             neighbours[b].append(a)
     firsts: list[int] = []
-    for vertex, colors in deadline.watch(enumerate(surface.vertex_colors)):
-        if cell_of[vertex] != OUTSIDE or not colors:
+    for vertex, label in deadline.watch(enumerate(labels)):
+        if piece_of[vertex] != OUTSIDE or label == unreached:
             continue
-        cell_of[vertex] = count = len(firsts)
+        piece_of[vertex] = count = len(firsts)
         firsts.append(vertex)
         stack = [vertex]
         while stack:
             for neighbour in neighbours[stack.pop()]:
-                if cell_of[neighbour] == OUTSIDE:
-                    cell_of[neighbour] = count
+                if piece_of[neighbour] == OUTSIDE:
+                    piece_of[neighbour] = count
                     stack.append(neighbour)
-    return cell_of, firsts
+    return piece_of, firsts
 
 
 def loops_of(
-    borders: Borders, curves: list[Curve], cell_of: list[int], deadline: Deadline
+    borders: Borders, curves: list[Curve], deadline: Deadline
 ) -> dict[int, tuple[tuple[int, ...], ...]]:
     """Each cell's border loops, as cyclic lists of darts with the cell on the left."""
     dart_at: dict[Step, int] = {}
@@ -120,7 +117,7 @@ def loops_of(
     loops: dict[int, list[tuple[int, ...]]] = {}
     walked: set[Step] = set()
     for first in deadline.watch(dart_at):
-        cell = cell_of[first[0]]
+        cell = borders.cell_of[first[0]]
         if cell == OUTSIDE or first in walked:
             continue
         darts = []
@@ -138,13 +135,13 @@ def loops_of(
 
 def _check_planar(
     surface: LabelledSurface,
-    cell_of: list[int],
     firsts: list[int],
     borders: Borders,
     loops: dict[int, tuple[tuple[int, ...], ...]],
     deadline: Deadline,
 ) -> None:
     """Euler's formula for each cell: a surface of genus g with b border loops has 2 - 2g - b."""
+    cell_of = borders.cell_of
     characteristic: Counter[int] = Counter(c for c in cell_of if c != OUTSIDE)
     for a, b in deadline.watch(surface.left_of):
         # A mesh edge stands here once for each of its triangles: count it at one of them.
@@ -164,44 +161,36 @@ def _check_planar(
             )
 
 
-class _DualMeasure:
-    """Areas and lengths on the barycentric dual of the mesh."""
+def _areas(surface: LabelledSurface, vertex_cell: list[int]) -> list[float]:
+    """Square metres of each cell."""
+    owner = np.array(vertex_cell)
+    reached = owner != OUTSIDE
+    sums = np.bincount(owner[reached], surface.vertex_areas[reached], max(vertex_cell) + 1)
+    return [round(float(value), 12) for value in sums]
 
-    def __init__(self, surface: LabelledSurface, mesh: ClosedMesh) -> None:
-        self._surface = surface
-        self._mesh = mesh
 
-    def areas(self, cell_of: list[int]) -> list[float]:
-        """Square metres of each cell."""
-        owner = np.array(cell_of[: self._mesh.real_count])
-        reached = owner != OUTSIDE
-        weights = self._surface.vertex_areas[reached]
-        sums = np.bincount(owner[reached], weights=weights, minlength=max(cell_of) + 1)
-        return [round(float(value), 12) for value in sums]
+def _lengths(surface: LabelledSurface, mesh: ClosedMesh, curves: list[Curve]) -> list[float]:
+    """Metres along each curve, from triangle to triangle over the middles of mesh edges."""
+    steps = np.array([step for curve in curves for step in curve.steps], dtype=np.int64)
+    if not len(steps):
+        return []
 
-    def lengths(self, curves: list[Curve]) -> list[float]:
-        """Metres along each curve, from triangle to triangle over the middles of mesh edges."""
-        steps = np.array([step for curve in curves for step in curve.steps], dtype=np.int64)
-        if not len(steps):
-            return []
-        third = self._mesh.third
-        left, right = steps.T
-        here = self._middles(steps)
-        total = np.zeros(len(steps))
-        for a, b in ((left, right), (right, left)):
-            ahead = np.array([third[pair] for pair in zip(a.tolist(), b.tolist(), strict=True)])
-            centre = self._middles(np.column_stack([a, b, ahead]))
-            total += np.linalg.norm(centre - here, axis=1)
-        counts = [len(curve.steps) for curve in curves]
-        sums = np.add.reduceat(total, np.concatenate([[0], np.cumsum(counts)[:-1]]))
-        return [round(float(value), 12) for value in sums]
-
-    def _middles(self, corners: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Means of the real ones among vertices (k, c), (k, 3); one of each row at least is real.
+    def middles(corners: Index) -> Array:
+        """Means of the real ones among vertices (k, c), (k, 3); one of each row is real.
 
         An edge to the outside is crossed at its real end, and the centre of a virtual triangle is
         the middle of its real edge.
         """
-        real = corners < self._mesh.real_count
-        places = self._surface.vertices[np.where(real, corners, 0)] * real[:, :, None]
+        real = corners < mesh.real_count
+        places = surface.vertices[np.where(real, corners, 0)] * real[:, :, None]
         return np.asarray(places.sum(axis=1) / real.sum(axis=1)[:, None])
+
+    left, right = steps.T
+    here = middles(steps)
+    total = np.zeros(len(steps))
+    for a, b in ((left, right), (right, left)):
+        ahead = np.array([mesh.third[pair] for pair in zip(a.tolist(), b.tolist(), strict=True)])
+        total += np.linalg.norm(middles(np.column_stack([a, b, ahead])) - here, axis=1)
+    counts = [len(curve.steps) for curve in curves]
+    sums = np.add.reduceat(total, np.concatenate([[0], np.cumsum(counts)[:-1]]))
+    return [round(float(value), 12) for value in sums]

@@ -10,7 +10,7 @@ import numpy as np
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.decomposition.borders import Borders, ClosedMesh, Curve
+from cellcolor.decomposition.borders import Borders, Curve
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,21 +48,22 @@ def locate(
     )
     return Decomposition(
         replace(instance, cells=measured, coverage=surface.coverage),
-        _curves(surface, instance, list(vertex_cell)),
+        _curves(surface, instance, vertex_cell),
         tuple(vertex_cell),
     )
 
 
-def _curves(surface: LabelledSurface, instance: Instance, cell_of: list[int]) -> dict[int, Curve]:
+def _curves(
+    surface: LabelledSurface, instance: Instance, vertex_cell: Sequence[int]
+) -> dict[int, Curve]:
     """The curve of each edge, by its id; none at all if the ids do not fit the curves.
 
     The decomposition numbers edges in the order in which it finds their curves, so the curves are
     looked for again in that order. An edge has to have the same cells on its sides and the same
     joinable colors as the curve of its number. Otherwise another program has numbered the edges.
     """
-    mesh = ClosedMesh(surface)
-    cell_of = cell_of + [OUTSIDE] * (mesh.vertex_count - mesh.real_count)
-    borders = Borders(surface, mesh, cell_of)
+    borders = Borders(surface, vertex_cell)
+    cell_of = borders.cell_of
     curves = dict(enumerate(borders.curves(), start=1))
     if curves.keys() != {edge.id for edge in instance.edges}:
         return {}

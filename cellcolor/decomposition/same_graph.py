@@ -9,8 +9,8 @@ from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.decomposition.borders import Borders, ClosedMesh
-from cellcolor.decomposition.cells import loops_of
+from cellcolor.decomposition.borders import Borders
+from cellcolor.decomposition.cells import loops_of, pieces_of
 
 _Side = tuple[int, int, tuple[int, ...]]
 """What a dart is besides its number: its cell, the cell across, the joinable colors."""
@@ -29,15 +29,15 @@ def wrong_cell(
         vertex_cell: the cell of each vertex, ``OUTSIDE`` where unreachable. Cells have to have the
             colors of their vertices; they may be smaller than they could be.
     """
-    mesh = ClosedMesh(surface)
-    cell_of = [*vertex_cell, *[OUTSIDE] * (mesh.vertex_count - mesh.real_count)]
-    pieces = _pieces(surface, vertex_cell, deadline)
+    _, firsts = pieces_of(surface, vertex_cell, OUTSIDE, deadline)
+    pieces = Counter(vertex_cell[first] for first in firsts)
     for cell in range(len(instance.cells)):
         if pieces[cell] != 1:
             return cell
-    borders = Borders(surface, mesh, cell_of)
+    borders = Borders(surface, vertex_cell)
+    cell_of = borders.cell_of
     curves = borders.curves(deadline)
-    loops = loops_of(borders, curves, cell_of, deadline)
+    loops = loops_of(borders, curves, deadline)
     drawn: dict[int, _Side] = {}
     for number, curve in enumerate(curves, start=1):
         left, right = curve.steps[0]
@@ -53,30 +53,6 @@ def wrong_cell(
     in_file = _shapes(told, (cell.loops for cell in instance.cells), deadline)
     different = (on_mesh - in_file) + (in_file - on_mesh)
     return min((shape[0][0][0] for shape in different), default=None)
-
-
-def _pieces(
-    surface: LabelledSurface, vertex_cell: Sequence[int], deadline: Deadline
-) -> Counter[int]:
-    """In how many pieces each cell lies on the mesh."""
-    beside: dict[int, list[int]] = defaultdict(list)
-    for a, b in deadline.watch(surface.left_of):
-        if vertex_cell[a] == vertex_cell[b] and not surface.cracked(a, b):
-            beside[a].append(b)
-            beside[b].append(a)
-    found, seen = Counter[int](), set[int]()
-    for vertex, cell in deadline.watch(enumerate(vertex_cell)):
-        if cell == OUTSIDE or vertex in seen:
-            continue
-        found[cell] += 1
-        seen.add(vertex)
-        left = [vertex]
-        while left:
-            for other in beside[left.pop()]:
-                if other not in seen:
-                    seen.add(other)
-                    left.append(other)
-    return found
 
 
 _Shape = tuple[tuple[_Side, int, int], ...]

@@ -11,7 +11,7 @@ import numpy as np
 from cellcolor.arrays import Array, Index
 from cellcolor.checker.cutting_paths import WholeSubCell
 from cellcolor.checker.vertex_plan import check_plan
-from cellcolor.data.cells_and_edges import OUTSIDE, Strand
+from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
@@ -19,7 +19,7 @@ from cellcolor.data.value import same_members
 from cellcolor.data.wording import count, segments_and_lift_offs
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition
-from cellcolor.decomposition.borders import Borders, ClosedMesh
+from cellcolor.decomposition.borders import Borders
 from cellcolor.errors import InputError, RefusedResult
 from cellcolor.painting.border_report import BorderReport
 from cellcolor.painting.gates import choose_gates, steps_by_edge, subcells_on_surface
@@ -158,13 +158,11 @@ class _Mesh:
         self.deadline = deadline
         self.surface = refined.surface(deadline)
         deadline.check()
-        self.closed = ClosedMesh(self.surface)
-        deadline.check()
         self.cell_of = cell_of[refined.stands_for]
-        outside = [OUTSIDE] * (self.closed.vertex_count - self.closed.real_count)
-        self.borders = Borders(self.surface, self.closed, [*self.cell_of.tolist(), *outside])
+        self.borders = Borders(self.surface, self.cell_of.tolist())
+        self.third = self.borders.mesh.third
         self.around: dict[int, list[int]] = {}
-        for a, b in deadline.watch(self.closed.third):
+        for a, b in deadline.watch(self.third):
             self.around.setdefault(a, []).append(b)
 
     def cracked(self, a: int, b: int) -> bool:
@@ -185,9 +183,7 @@ class _Mesh:
         own = np.flatnonzero(self.cell_of == cell).tolist()
         terminals = [[gates[strand] for strand in sorted(subcell.strands)] for subcell in subcells]
         try:
-            trees = grow_trees(
-                own, self.around, self.closed.third, self.cracked, terminals, self.deadline
-            )
+            trees = grow_trees(own, self.around, self.third, self.cracked, terminals, self.deadline)
         except TooNarrow:
             return None
         return {vertex: subcells[number].segment for vertex, number in trees.items()}

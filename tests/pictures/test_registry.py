@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -87,8 +88,13 @@ def test_a_surface_is_decomposed_once(tmp_path: Path, monkeypatch: pytest.Monkey
     from cellcolor.decomposition import cells
 
     made = []
-    real = cells.ClosedMesh
-    monkeypatch.setattr(cells, "ClosedMesh", lambda surface: made.append(surface) or real(surface))
+    real = cells.Borders
+
+    def borders(surface: LabelledSurface, vertex_cell: Sequence[int]) -> cells.Borders:
+        made.append(surface)
+        return real(surface, vertex_cell)
+
+    monkeypatch.setattr(cells, "Borders", borders)
     path, solution = saved(DRAWN, tmp_path), tmp_path / "solution.json"
     assert run("solve", path, "-o", solution) == 0
     for arguments in ([path, "--view", "graph"], [path, solution]):
