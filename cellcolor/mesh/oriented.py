@@ -34,16 +34,13 @@ def directed_edges(faces: NDArray[np.int64], vertex_count: int) -> dict[tuple[in
     if len(twice):
         again = twice[np.argmin(order[twice + 1])]
         _refuse_edge(faces, int(order[again]), int(order[again + 1]))
-    following = _found(key[order], order, start * vertex_count + third)
+    # The directed edge from the same vertex to what stands on the left; -1 where there is none.
+    wanted, ascending = start * vertex_count + third, key[order]
+    at = np.minimum(np.searchsorted(ascending, wanted), len(key) - 1)
+    following = np.where(ascending[at] == wanted, order[at], -1)
     _check_fans(start, following, vertex_count)
     pairs = zip(start.tolist(), end.tolist(), strict=True)
     return dict(zip(pairs, third.tolist(), strict=True))
-
-
-def _found(keys: Index, places: Index, wanted: Index) -> Index:
-    """The places of the wanted ones among ascending keys, -1 where there is none."""
-    index = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
-    return np.where(keys[index] == wanted, places[index], -1)
 
 
 def _check_indices(faces: NDArray[np.int64], vertex_count: int) -> None:

@@ -80,6 +80,19 @@ class TriangleMesh:
         two = np.flatnonzero(self.triangles_at == 2)
         return _fixed(two), _fixed(np.column_stack([order[first[two]], order[first[two] + 1]]))
 
+    @cached_property
+    def across(self) -> Index:
+        """(m, 3) the side of the other triangle that each side is; -1 unless two have it."""
+        one, other = self.pairs[1].T
+        found = np.full(3 * len(self.corners), -1, dtype=np.int64)
+        found[one], found[other] = other, one
+        return _fixed(found.reshape(-1, 3))
+
+    @property
+    def beyond(self) -> Index:
+        """(m, 3) the triangle beyond each side; -1 unless two have it."""
+        return self.across // 3
+
     def sides_of(self, edge: int) -> Index:
         """The sides that are an edge, ascending."""
         first = self._first_side[edge]

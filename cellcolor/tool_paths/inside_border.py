@@ -111,7 +111,7 @@ def _round(
         corners = mesh.corners[triangle].tolist()
         (other,) = set(corners) - {vertex, behind}
         side = next(k for k in range(3) if behind not in (corners[k], corners[k - 2]))
-        onto = int(mesh.beyond[triangle, side])
+        onto = int(mesh.across[triangle, side]) // 3
         if onto < 0:
             return None
         spokes.append((other, triangle))

@@ -102,9 +102,13 @@ def join_loops(mesh: Triangles, rows: list[Index], gap: float, deadline: Deadlin
 def doors_between(mesh: Triangles, rows: list[Index], gap: float) -> tuple[list[Loop], list[Door]]:
     """The loops, and the doors that join them along a shortest spanning tree."""
     loops = [Loop(mesh, row) for row in rows]
-    ways, loop_of = _nearest_loops(mesh, rows, gap)
-    doors = _doors(mesh, loops, ways, loop_of)
-    return loops, [door for door, _ in _widened(loops, doors, gap)]
+    loop_of = np.full(len(mesh.points), -1, dtype=np.int64)
+    for number, row in enumerate(rows):
+        loop_of[row] = number
+    ways = ways_from(mesh.graph(off_border(mesh, gap / 2)), np.concatenate(rows))
+    candidates = _doors(mesh, loops, ways, loop_of[ways.source])
+    _widen(loops, candidates, gap)
+    return loops, [door for door, _ in candidates]
 
 
 def by_loop(doors: list[Door]) -> dict[int, list[Door]]:
@@ -114,15 +118,6 @@ def by_loop(doors: list[Door]) -> dict[int, list[Door]]:
         for loop in door.loops:
             at.setdefault(loop, []).append(door)
     return at
-
-
-def _nearest_loops(mesh: Triangles, rows: list[Index], gap: float) -> tuple[Ways, Index]:
-    """Ways from the nearest loop to each vertex, and which loop that is."""
-    loop_of = np.full(len(mesh.points), -1, dtype=np.int64)
-    for number, row in enumerate(rows):
-        loop_of[row] = number
-    ways = ways_from(mesh.graph(off_border(mesh, gap / 2)), np.concatenate(rows))
-    return ways, loop_of[ways.source]
 
 
 def _doors(
@@ -158,13 +153,15 @@ def _doors(
     return found
 
 
-def _widened(
-    loops: list[Loop], doors: list[tuple[Door, list[_Bridge]]], gap: float
-) -> list[tuple[Door, list[_Bridge]]]:
+def _widen(loops: list[Loop], doors: list[tuple[Door, list[_Bridge]]], gap: float) -> None:
     """Give doors a second bridge where there is room; what they leave out holds no other door."""
     at = by_loop([door for door, _ in doors])
     for door, bridges in doors:
         own = [loops[number] for number in door.loops]
+        around = [
+            (number, loops[number], [other for other in at[number] if other is not door])
+            for number in door.loops
+        ]
         wanted = min(gap, own[0].length / 4, own[1].length / 4)
         places = np.array([(bridge.first, bridge.second) for bridge in bridges])
         apart = [
@@ -176,12 +173,11 @@ def _widened(
         for one, other in usable[order[:_MOST_TRIED]].tolist():
             pair = bridges[one], bridges[other]
             if all(
-                _free(loop, loop.arc(*places[[one, other], end].tolist()), at[number], door, number)
-                for end, (number, loop) in enumerate(zip(door.loops, own, strict=True))
+                is_free(loop, number, loop.arc(*places[[one, other], end].tolist())[1:], others)
+                for end, (number, loop, others) in enumerate(around)
             ):
                 door.bridges = pair
                 break
-    return doors
 
 
 def _pairs_apart(along: Array, length: float) -> Array:
@@ -190,19 +186,14 @@ def _pairs_apart(along: Array, length: float) -> Array:
     return np.minimum(forward, length - forward)
 
 
-def _free(
-    loop: Loop, arc: tuple[float, int, int], doors: list[Door], but: Door, number: int
-) -> bool:
-    """Whether a piece of a loop may be left out: no other door needs a place of it."""
-    _, start, end = arc
+def is_free(loop: Loop, number: int, piece: tuple[int, int], doors: list[Door]) -> bool:
+    """Whether no door at a loop needs a place of a piece, or leaves out the piece's beginning."""
     for door in doors:
-        if door is but:
-            continue
-        _, begin, stop = loop.arc(*door.places(number))
+        _, begin, end = loop.arc(*door.places(number))
         if (
-            loop.inside(begin, (start, end))
-            or loop.inside(stop, (start, end))
-            or loop.inside(start, (begin, stop))
+            loop.inside(begin, piece)
+            or loop.inside(end, piece)
+            or loop.inside(piece[0], (begin, end))
         ):
             return False
     return True

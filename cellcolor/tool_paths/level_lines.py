@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index
 from cellcolor.tool_paths.triangles import Triangles, split_at
 
 _NEAR = 0.02  # of the distance between levels: vertices this close to a level are moved off it
@@ -61,8 +61,9 @@ def slice_along(mesh: Triangles, values: Array, levels: Array) -> Sliced:
         several = crossed > 1
         if not several.any():
             break
-        mesh, edges_cut = _halved(mesh, several)
-        values = _off(np.concatenate([values, values[edges_cut].mean(axis=1)]), levels)
+        middles = values[mesh.edges[several]].mean(axis=1)
+        mesh, _ = split_at(mesh, several, 0.5)
+        values = _off(np.concatenate([values, middles]), levels)
     ends = values[mesh.edges]
     split = crossed == 1
     number = np.minimum(at[:, 0], len(levels) - 1)
@@ -100,18 +101,12 @@ def level_lines(sliced: Sliced) -> list[LevelLine]:
     return lines
 
 
-def _halved(mesh: Triangles, edges: Mask) -> tuple[Triangles, Index]:
-    finer, on = split_at(mesh, edges, np.full(len(mesh.edges), 0.5))
-    return finer, mesh.edges[on]
-
-
 def _off(values: Array, levels: Array) -> Array:
     """The values, those on a level or just beside it moved a little above it."""
     apart = float(np.diff(levels).min()) if len(levels) > 1 else float(np.ptp(values)) or 1.0
-    nearest = levels[np.abs(values[:, None] - levels).argmin(axis=1)] if len(levels) < 2 else None
-    if nearest is None:
-        at = np.clip(np.searchsorted(levels, values), 1, len(levels) - 1)
-        below, above = levels[at - 1], levels[at]
-        nearest = np.where(values - below < above - values, below, above)
+    at = np.searchsorted(levels, values)
+    bounds = np.concatenate([[-np.inf], levels, [np.inf]])
+    below, above = bounds[at], bounds[at + 1]
+    nearest = np.where(values - below < above - values, below, above)
     near = np.abs(values - nearest) < _NEAR * apart
     return np.where(near, nearest + _NEAR * apart, values)

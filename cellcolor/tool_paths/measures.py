@@ -183,20 +183,16 @@ def in_all(measures: list[PathMeasures], spacing: float) -> PathMeasures:
         return PathMeasures(0.0, 0.0, 1.0, 1.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0)
     area = sum(one.area_m2 for one in measures)
     length = sum(one.length_m for one in measures)
-
-    def mean(values: list[float], weights: list[float]) -> float:
-        return float(np.average(values, weights=weights))
-
-    areas = [one.area_m2 for one in measures]
+    areas, lengths = [one.area_m2 for one in measures], [one.length_m for one in measures]
     return PathMeasures(
         area,
         length,
-        mean([one.covered_wide for one in measures], areas),
-        mean([one.covered for one in measures], areas),
-        mean([one.mean_visits for one in measures], areas),
+        float(np.average([one.covered_wide for one in measures], weights=areas)),
+        float(np.average([one.covered for one in measures], weights=areas)),
+        float(np.average([one.mean_visits for one in measures], weights=areas)),
         max(one.most_visits for one in measures),
         length * spacing / area,
-        mean([one.sharp_turns for one in measures], [one.length_m for one in measures]),
+        float(np.average([one.sharp_turns for one in measures], weights=lengths)),
         max(one.longest_step_m for one in measures),
         sum(one.border_m for one in measures),
     )

@@ -96,7 +96,7 @@ def clipped(
         split &= mesh.lengths > finest
         if not split.any():
             break
-        mesh, _ = split_at(mesh, split, np.full(len(split), 0.5))
+        mesh, _ = split_at(mesh, split, 0.5)
         owner = _owner(mesh, surface)
     inside = own[owner]
     left = np.full(len(mesh.points), -1.0)  # of the way that may be gone, m

@@ -83,7 +83,7 @@ def without_refused(
         # With the longest side of each triangle cut as well, even needles get shorter.
         split = with_longest_sides(mesh, split)
         count = len(mesh.points)
-        mesh, _ = split_at(mesh, split, np.full(len(split), 0.5))
+        mesh, _ = split_at(mesh, split, 0.5)
         new = refusals(mesh.points[count:], mesh.normals[count:])
         codes = np.concatenate([codes, new])
     kept: Mask = ~np.any(bad, axis=1)

@@ -18,6 +18,7 @@ from cellcolor.tool_paths.joined_loops import (
     Part,
     by_loop,
     doors_between,
+    is_free,
     join_loops,
     walked,
 )
@@ -114,7 +115,7 @@ def _spiral(
         if not inside:
             leave = enter
         left_out = (leave, enter) if forward else (enter, leave)
-        if not _clear(loop, left_out, at.get(number, []), number):
+        if not is_free(loop, number, left_out, at.get(number, [])):
             return None
         rounds.append((number, enter, leave, forward, None))
         if inside:
@@ -188,14 +189,3 @@ def _direction(mesh: Triangles, loop: Loop, place: int, gap: float) -> Array:
     far = min(gap, loop.length / 8)
     behind, ahead = (loop.row[loop.moved(place, way)] for way in (-far, far))
     return np.asarray(mesh.points[ahead] - mesh.points[behind])
-
-
-def _clear(loop: Loop, left_out: tuple[int, int], doors: list[Door], number: int) -> bool:
-    """Whether no door needs a place of a stretch of a loop, nor leaves out one of its ends."""
-    for door in doors:
-        _, begin, end = loop.arc(*door.places(number))
-        if any(loop.inside(place, left_out) for place in (begin, end)):
-            return False
-        if loop.inside(left_out[0], (begin, end)):
-            return False
-    return True

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, unit
 from cellcolor.mesh.dividing import cut, new_points
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
@@ -58,14 +58,6 @@ class Triangles(TriangleMesh):
         return distances
 
     @cached_property
-    def beyond(self) -> Index:
-        """(m, 3) the triangle beyond each side, -1 where there is none."""
-        one, other = self.pairs[1].T
-        found = np.full(3 * len(self.corners), -1, dtype=np.int64)
-        found[one], found[other] = other // 3, one // 3
-        return found.reshape(-1, 3)
-
-    @cached_property
     def from_border(self) -> Array:
         """(n,) distance of each vertex from the border along the mesh, m; there must be one."""
         return self.distances_from(np.flatnonzero(self.border))
@@ -85,32 +77,30 @@ class Triangles(TriangleMesh):
             halved = mesh.lengths > longest
             if not halved.any():
                 return mesh
-            mesh, _ = split_at(mesh, halved, np.full(len(mesh.edges), 0.5))
+            mesh, _ = split_at(mesh, halved, 0.5)
 
 
-def split_at(mesh: Triangles, split: Mask, shares: Array) -> tuple[Triangles, Index]:
+def split_at(mesh: Triangles, split: Mask, shares: Array | float) -> tuple[Triangles, Index]:
     """A new vertex on each of some edges, and the triangles cut between them.
 
     Args:
         mesh: what to cut.
         split: (e,) which edges get a new vertex.
-        shares: (e,) where on each edge, 0 at its first end and 1 at its second.
+        shares: (e,) where on each edge, 0 at its first end and 1 at its second; or on all of them.
 
     Returns:
         The finer mesh, old vertices first, and the edge that each new vertex lies on.
     """
     on = np.flatnonzero(split)
-    share = shares[on][:, None]
+    share = np.broadcast_to(shares, split.shape)[on][:, None]
     ends = mesh.edges[on]
     points, normals = [
         np.vstack([rows, (1 - share) * rows[ends[:, 0]] + share * rows[ends[:, 1]]])
         for rows in (mesh.points, mesh.normals)
     ]
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    normals = normals / np.where(lengths > 0, lengths, 1.0)
     # Of triangles with two sides cut and with three the whole one, or the last, decides the order.
     is_cut = split[mesh.edge_of_side]
     after_whole = (is_cut.argmin(axis=1) + 1) % 3
     first = np.where(is_cut.sum(axis=1) < 2, is_cut.argmax(axis=1), after_whole)
     corners, of = cut(mesh, new_points(mesh, split), first, points)
-    return Triangles(points, corners, normals, mesh.faces[of]), on
+    return Triangles(points, corners, unit(normals), mesh.faces[of]), on

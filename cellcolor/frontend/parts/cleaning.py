@@ -93,9 +93,7 @@ def without_flat(vertices: Array, faces: Faces) -> Faces:
 
 def _parted_beside(vertices: Array, faces: Faces, flat: Mask) -> Faces:
     """One pass over flat faces; a face takes part in one change at most."""
-    _, sides = TriangleMesh(vertices, faces).pairs
-    beside = np.full(3 * len(faces), -1, dtype=np.int64)
-    beside[sides[:, 0]], beside[sides[:, 1]] = sides[:, 1], sides[:, 0]
+    across = TriangleMesh(vertices, faces).across
     touched = np.zeros(len(faces), dtype=bool)
     keep = np.ones(len(faces), dtype=bool)
     added = []
@@ -103,7 +101,7 @@ def _parted_beside(vertices: Array, faces: Faces, flat: Mask) -> Faces:
         corners = vertices[faces[face]]
         lengths = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
         corner = int(np.argmax(lengths))
-        side = int(beside[3 * face + corner])
+        side = int(across[face, corner])
         other, at = divmod(side, 3)
         if touched[face] or (side >= 0 and touched[other]):
             continue
@@ -208,8 +206,8 @@ def split(vertices: Array, faces: Faces) -> tuple[Array, Faces, float]:
     order = np.lexsort((np.arange(len(group)), -corners, own))
     moved = np.zeros(len(group), dtype=bool)
     moved[order[1:]] = own[order[1:]] == own[order[:-1]]
-    places = vertices[own]
-    return (*_moved_apart(places, parted, moved),)
+    places, far = _moved_apart(vertices[own], parted, moved)
+    return places, parted, far
 
 
 def _glued(mesh: TriangleMesh) -> Index:
@@ -235,10 +233,10 @@ def _glued(mesh: TriangleMesh) -> Index:
     return np.array(chosen, dtype=np.int64).reshape(-1, 2)
 
 
-def _moved_apart(vertices: Array, faces: Faces, moved: Array) -> tuple[Array, Faces, float]:
+def _moved_apart(vertices: Array, faces: Faces, moved: Mask) -> tuple[Array, float]:
     """Some vertices go a hundredth of their shortest side towards the middle of their faces."""
     if not moved.any():
-        return vertices, faces, 0.0
+        return vertices, 0.0
     rows = np.flatnonzero(moved[faces].any(axis=1))
     corners = vertices[faces[rows]]
     sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
@@ -253,7 +251,7 @@ def _moved_apart(vertices: Array, faces: Faces, moved: Array) -> tuple[Array, Fa
     step = _APART * shortest[which, None] * way / np.maximum(length, 1e-300)
     changed = vertices.copy()
     changed[which] += step
-    return changed, faces, float(np.linalg.norm(step, axis=1).max())
+    return changed, float(np.linalg.norm(step, axis=1).max())
 
 
 MOST_EDGES = 250  # of a hole that is filled; the work grows with the third power

@@ -90,7 +90,7 @@ def _rims(surface: Surface) -> Array:
 
 @dataclass(frozen=True)
 class _Around:
-    """The vertices of a surface on its mesh before edges were halved, and what is beside its faces.
+    """The vertices of a surface on its mesh before edges were halved.
 
     Halving an edge divides a face into triangles of one plane, so what counts are the whole faces.
 
@@ -98,24 +98,18 @@ class _Around:
         points: (n, 3) the vertices, m.
         own: (p, 2) each vertex with each face of the mesh that it lies in, in order.
         mesh: the whole faces.
-        beside: (m, 3) the face across each side ab, bc, ca; -1 at the border.
     """
 
     points: Array
     own: Index
     mesh: TriangleMesh
-    beside: Index
 
     @classmethod
     def of(cls, surface: Surface) -> _Around:
         mesh, lies_in = surface.divided or (surface.mesh, np.arange(len(surface.faces)))
         count = len(mesh.corners)
         own = np.unique(surface.faces * count + lies_in[:, None])
-        _, sides = mesh.pairs
-        beside = np.full(3 * count, -1, dtype=np.int64)
-        beside[sides[:, 0]], beside[sides[:, 1]] = sides[:, 1] // 3, sides[:, 0] // 3
-        pairs = np.column_stack(np.divmod(own, count))
-        return cls(surface.vertices, pairs, mesh, beside.reshape(-1, 3))
+        return cls(surface.vertices, np.column_stack(np.divmod(own, count)), mesh)
 
     def is_bent(self, radius: float) -> Mask:
         """Which vertices (n,) may have another plane than their own faces' within a radius."""
@@ -153,6 +147,7 @@ class _Around:
             are connected; 0 of a vertex's own faces. None if that is too much.
         """
         faces, points, count = self.mesh.corners, self.mesh.points, len(self.mesh.corners)
+        beyond = self.mesh.beyond
         begin, end = (np.searchsorted(self.own[:, 0], rows, side) for side in ("left", "right"))
         which, number = numbered(end - begin)
         face = self.own[begin[which] + number, 1]
@@ -163,7 +158,7 @@ class _Around:
             sides = [points[corners[:, side]] for side in (0, 1, 2, 0)]
             pairs = []
             for side in range(3):
-                across = self.beside[face, side]
+                across = beyond[face, side]
                 least = np.maximum(its_ball, _distance(at_points, *sides[side : side + 2]))
                 going = (across >= 0) & (least < radius)
                 pairs.append((which[going], across[going], least[going]))
