@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 
 from cellcolor.arrays import Array
-from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.mesh_facts import FaultyPlaces, MeshFacts, facts_of
 from cellcolor.frontend.parts.mesh_file import UNITS, likely_unit
 from cellcolor.frontend.parts.repaired import check_known_size, in_words
-from cellcolor.frontend.parts.repairing import Mending, Telling, mended
+from cellcolor.frontend.parts.repairing import Mending, Telling, counted, mended
 from cellcolor.frontend.parts.surface import Faces
 
 _SHOWN = 3  # places of one fault in a printed inspection
@@ -198,15 +197,9 @@ def _listed(one: str, places: list[str], what: str = "") -> str:
     """How many, and the first places."""
     if not places:
         return ""
-    many = f"{len(places):,} {'vertices' if one == 'vertex' else one + 's'}"
-    number = f"1 {one}" if len(places) == 1 else many
     more = f", and {len(places) - _SHOWN:,} more" if len(places) > _SHOWN else ""
-    return f"{number}{what}: {', '.join(places[:_SHOWN])}{more}"
+    return f"{counted(len(places), one)}{what}: {', '.join(places[:_SHOWN])}{more}"
 
 
 def _some(number: int, one: str, what: str) -> str:
-    if not number:
-        return ""
-    if one == "vertex" and number > 1:
-        return f"{number:,} vertices {what}"
-    return f"{count(number, one)} {what}"
+    return f"{counted(number, one)} {what}" if number else ""

@@ -24,7 +24,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.cleaning import borders, flat_faces, used
 from cellcolor.frontend.parts.crossings import crossing_of, crossing_pairs
-from cellcolor.frontend.parts.repairing import Change, Mending, Telling, mended
+from cellcolor.frontend.parts.repairing import Change, Mending, Telling, counted, mended
 from cellcolor.frontend.parts.surface import SHARP, Faces, refine
 from cellcolor.frontend.sizes import MOST_VERTICES
 from cellcolor.mesh.remesher import distances, remesh
@@ -127,8 +127,7 @@ def _mended(
         if not left or not more:
             break
     if taken:
-        name = "1 vertex" if taken == 1 else f"{taken:,} vertices"
-        changes.insert(0, Change(f"folds mended: {name} drawn into neighbors"))
+        changes.insert(0, Change(f"folds mended: {counted(taken, 'vertex')} drawn into neighbors"))
     if left:
         place = ", ".join(f"{x:.4g}" for x in vertices[left[0]].mean(axis=0))
         where = f"at ({place}) m" if len(left) == 1 else f"the first at ({place}) m"

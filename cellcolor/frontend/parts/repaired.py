@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
@@ -64,12 +64,7 @@ class RepairedPart:
         """The report, all of it JSON-able; the mesh itself is not in it."""
         deviation = None
         if self.deviation is not None:
-            deviation = {
-                "greatest_m": self.deviation.greatest,
-                "mean_m": self.deviation.mean,
-                "greatest_back_m": self.deviation.greatest_back,
-                "mean_back_m": self.deviation.mean_back,
-            }
+            deviation = {f"{name}_m": far for name, far in asdict(self.deviation).items()}
         return {
             "vertices": len(self.vertices),
             "triangles": len(self.faces),
@@ -91,11 +86,11 @@ class RepairedPart:
     def __str__(self) -> str:
         lines = [in_words(change) for change in self.changes] or ["no change was needed"]
         if self.deviation is not None:
-            there, back = self.deviation, self.deviation
+            off = self.deviation
             lines.append(
-                f"the new mesh is at most {1e3 * there.greatest:.3g} mm from the old one, "
-                f"{1e3 * there.mean:.3g} mm in the mean; back {1e3 * back.greatest_back:.3g} and "
-                f"{1e3 * back.mean_back:.3g} mm (vertices and middles of faces)"
+                f"the new mesh is at most {1e3 * off.greatest:.3g} mm from the old one, "
+                f"{1e3 * off.mean:.3g} mm in the mean; back {1e3 * off.greatest_back:.3g} and "
+                f"{1e3 * off.mean_back:.3g} mm (vertices and middles of faces)"
             )
         left = count(self.holes, "border") if self.holes else "closed"
         lines.append(

@@ -91,19 +91,12 @@ def mended(
     before = len(vertices)
     there = len(np.unique(faces))
     vertices, faces = merged(vertices, faces)
-    _note(changes, before - there, "vertex", "dropped that no face uses", "vertices")
-    _note(
-        changes,
-        there - len(vertices),
-        "vertex",
-        "merged with another in the same place",
-        "vertices",
-    )
+    _note(changes, before - there, "vertex", "dropped that no face uses")
+    _note(changes, there - len(vertices), "vertex", "merged with another in the same place")
     step("dropping useless faces")
     vertices, faces = _without_useless(vertices, faces, changes)
     step("making the winding consistent")
-    faces = _wound(vertices, faces, changes)
-    _check_two_sided(vertices, faces)
+    faces = _wound(vertices, faces, changes, two_sided=True)
     step("cutting apart what is not manifold")
     vertices, faces = _manifold(vertices, faces, changes)
     step("dropping small components")
@@ -132,10 +125,15 @@ def _check(vertices: Array, faces: Faces) -> None:
         raise InputError(None, "faces", "there are none")
 
 
-def _note(changes: list[Change], number: int, one: str, what: str, many: str | None = None) -> None:
+def counted(number: int, one: str) -> str:
+    """``1 vertex``, ``1,200 vertices``."""
+    several = "vertices" if one == "vertex" else f"{one}s"
+    return f"{number:,} {one if number == 1 else several}"
+
+
+def _note(changes: list[Change], number: int, one: str, what: str) -> None:
     if number:
-        name = one if number == 1 else many or f"{one}s"
-        changes.append(Change(f"{number:,} {name} {what}"))
+        changes.append(Change(f"{counted(number, one)} {what}"))
 
 
 def area_of(vertices: Array, faces: Faces) -> float:
@@ -176,10 +174,11 @@ def _manifold(vertices: Array, faces: Faces, changes: list[Change]) -> tuple[Arr
         changes.append(Change(f"{text} and more", area - before))
     if len(parted) > len(vertices):
         copies = len(parted) - len(vertices)
-        name = "1 vertex" if copies == 1 else f"{copies:,} vertices"
-        text = f"{name} added: the mesh cut apart where it was no manifold, and copies of a vertex "
+        text = (
+            f"{counted(copies, 'vertex')} added: the mesh cut apart where it was no manifold, "
+            f"and copies of a vertex moved by up to {moved:.3g}"
+        )
         changed = area_of(parted, renumbered) - before
-        text += f"moved by up to {moved:.3g}"
         changes.append(Change(text, max(-changed, 0.0), max(changed, 0.0)))
     return parted, renumbered
 
@@ -210,19 +209,16 @@ def _large(
     return used(vertices, faces[~small[part]])
 
 
-def _wound(vertices: Array, faces: Faces, changes: list[Change]) -> Faces:
-    turn, _ = against_the_others(TriangleMesh(vertices, faces))
-    _note(changes, int(turn.sum()), "face", "turned to wind like those around")
-    return turned(faces, turn)
-
-
-def _check_two_sided(vertices: Array, faces: Faces) -> None:
-    _, one_sided = against_the_others(TriangleMesh(vertices, faces))
-    if one_sided.any():
+def _wound(vertices: Array, faces: Faces, changes: list[Change], two_sided: bool = False) -> Faces:
+    """Faces that wind like their neighbors; refused if they have to be two-sided and are not."""
+    turn, one_sided = against_the_others(TriangleMesh(vertices, faces))
+    if two_sided and one_sided.any():
         face = int(np.argmax(one_sided))
         message = "lies in a one-sided component, like a Moebius strip: it has no outside"
         place = ", ".join(f"{x:.4g}" for x in vertices[faces[face]].mean(axis=0))
         raise InputError(None, f"faces near ({place})", message)
+    _note(changes, int(turn.sum()), "face", "turned to wind like those around")
+    return turned(faces, turn)
 
 
 def _filled(
