@@ -19,6 +19,7 @@ from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.painting.border_report import Corridor
 from cellcolor.painting.nearby import Nearby
+from cellcolor.union_find import UnionFind
 
 _FAR = 3
 """In tool radii: how far clearances are followed."""
@@ -116,15 +117,8 @@ class Room:
         clearance, and where one connects two parts that were apart, it is the narrowest place
         between them.
         """
-        peak: dict[int, float] = {}
-        above: dict[int, int] = {}
-
-        def top(vertex: int) -> int:
-            while above[vertex] != vertex:
-                above[vertex] = above[above[vertex]]
-                vertex = above[vertex]
-            return vertex
-
+        peak: dict[int, float] = {}  # the greatest clearance of each part, by its representative
+        part: UnionFind[int] = UnionFind()
         clearance = self.clearance.tolist()
         tree: dict[int, list[int]] = {}
         found = []
@@ -132,13 +126,12 @@ class Room:
             self._deadline.check()
             if self._segment[vertex] < 0:
                 continue
-            above[vertex], peak[vertex], tree[vertex] = vertex, clearance[vertex], []
+            peak[vertex], tree[vertex] = clearance[vertex], []
             best = None
             for other in sorted(self._onward(vertex), key=lambda w: -clearance[w]):
-                if other not in above or top(vertex) == top(other):
+                if other not in tree or part[vertex] == part[other]:
                     continue
-                first, second = top(vertex), top(other)
-                lower = min(peak[first], peak[second])
+                lower, upper = sorted((peak[part[vertex]], peak[part[other]]))
                 if best is None:
                     best = other  # the side of the vertex itself from now on
                 elif lower >= 2 * clearance[vertex] or clearance[vertex] < self.radius <= lower:
@@ -146,8 +139,8 @@ class Room:
                     x, y, z = self._nearby.surface.vertices[vertex].tolist()
                     width = 2 * clearance[vertex]
                     found.append(Corridor(self._segment[vertex], width, (x, y, z), way))
-                peak[first] = max(peak[first], peak[second])
-                above[second] = first
+                part.union(vertex, other)
+                peak[part[vertex]] = upper
                 tree[vertex].append(other)
                 tree[other].append(vertex)
         return sorted(found, key=lambda corridor: corridor.width_m)

@@ -24,7 +24,7 @@ from cellcolor.errors import InputError, RefusedResult
 from cellcolor.painting.border_report import BorderReport
 from cellcolor.painting.gates import choose_gates, steps_by_edge, subcells_on_surface
 from cellcolor.painting.refined import Refined, interpolated, unrefined
-from cellcolor.painting.trees import TooNarrow, grow_trees
+from cellcolor.painting.trees import TooNarrow, Trees
 from cellcolor.union_find import UnionFind
 
 
@@ -183,7 +183,9 @@ class _Mesh:
         own = np.flatnonzero(self.cell_of == cell).tolist()
         terminals = [[gates[strand] for strand in sorted(subcell.strands)] for subcell in subcells]
         try:
-            trees = grow_trees(own, self.around, self.third, self.cracked, terminals, self.deadline)
+            trees = Trees(
+                own, self.around, self.third, self.cracked, terminals, self.deadline
+            ).grown()
         except TooNarrow:
             return None
         return {vertex: subcells[number].segment for vertex, number in trees.items()}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 from cellcolor.arrays import Array, Index
 from cellcolor.deadline import Deadline
@@ -41,8 +41,8 @@ class Relabelling:
 
         Every move makes the sum smaller by a least amount, so this ends.
         """
-        around, segment = self._nearby.around, self.segment
-        queue = deque(v for v, own in enumerate(segment) if self._at_border(v, own))
+        around = self._nearby.around
+        queue = deque(filter(self._at_border, range(len(self.segment))))
         queued = set(queue)
         while queue:
             deadline.check()
@@ -57,9 +57,9 @@ class Relabelling:
                 queue.append(other)
                 queued.add(other)
 
-    def _at_border(self, vertex: int, own: int | None = None) -> bool:
+    def _at_border(self, vertex: int) -> bool:
         segment = self.segment
-        own = segment[vertex] if own is None else own
+        own = segment[vertex]
         return own >= 0 and any(segment[w] not in (own, -1) for w in self._nearby.around[vertex])
 
     def _improved(self, vertex: int) -> bool:
@@ -118,11 +118,9 @@ class Relabelling:
         for a, b in self._nearby.link[vertex]:
             if segment[a] == number == segment[b] and color not in cracked(a, b):
                 linked.union(a, b)
-        met = self._met(vertex, number, color)
-        return len({linked[w] for w in met})
-
-    def _met(self, vertex: int, number: int, color: int) -> Iterable[int]:
-        cracked = self._surface.cracked
-        for other in self._nearby.around[vertex]:
-            if self.segment[other] == number and color not in cracked(vertex, other):
-                yield other
+        met = [
+            other
+            for other in self._nearby.around[vertex]
+            if segment[other] == number and color not in cracked(vertex, other)
+        ]
+        return len({linked[other] for other in met})

@@ -34,35 +34,8 @@ class TooNarrow(Exception):
     """The mesh of the cell leaves too little room for disjoint trees."""
 
 
-def grow_trees(
-    vertices: Iterable[int],
-    around: Mapping[int, Sequence[int]],
-    third: Mapping[Step, int],
-    cracked: Callable[[int, int], bool],
-    terminals: list[list[int]],
-    deadline: Deadline = NEVER,
-) -> dict[int, int]:
-    """Disjoint connected sets of vertices, one for each sub-cell.
-
-    Args:
-        vertices: those of the cell.
-        around: the neighbors of each vertex over mesh edges.
-        third: the third vertex of the triangle on the left of each directed mesh edge; the mesh is
-            closed.
-        cracked: whether a mesh edge has a crack, given in either direction.
-        terminals: the vertices that each sub-cell has to contain; the sub-cells do not cross.
-
-    Returns:
-        ``{vertex: sub-cell}`` of the vertices on trees.
-
-    Raises:
-        TooNarrow: there is no room, or two sub-cells have one terminal in common.
-    """
-    return _Trees(vertices, around, third, cracked, terminals, deadline).grown()
-
-
-class _Trees:
-    """Trees that grow.
+class Trees:
+    """Disjoint connected sets of vertices that grow, one for each sub-cell.
 
     Attributes:
         free: the vertices on no tree.
@@ -81,8 +54,21 @@ class _Trees:
         third: Mapping[Step, int],
         cracked: Callable[[int, int], bool],
         terminals: list[list[int]],
-        deadline: Deadline,
+        deadline: Deadline = NEVER,
     ) -> None:
+        """Each terminal alone is a tree.
+
+        Args:
+            vertices: those of the cell.
+            around: the neighbors of each vertex over mesh edges.
+            third: the third vertex of the triangle on the left of each directed mesh edge; the
+                mesh is closed.
+            cracked: whether a mesh edge has a crack, given in either direction.
+            terminals: the vertices that each sub-cell has to contain; the sub-cells do not cross.
+
+        Raises:
+            TooNarrow: two sub-cells have one terminal in common.
+        """
         self.deadline = deadline
         self.free = set(vertices)
         self.third = third
@@ -108,6 +94,11 @@ class _Trees:
                     self._take(vertex, block)
 
     def grown(self) -> dict[int, int]:
+        """``{vertex: sub-cell}`` of disjoint trees that connect each sub-cell's terminals.
+
+        Raises:
+            TooNarrow: there is no room.
+        """
         while any(count > 1 for count in self.pieces):
             walks = self._walks()
             path = self._along_a_wall(walks) or self._across(walks)

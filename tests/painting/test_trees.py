@@ -11,7 +11,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition.borders import ClosedMesh
 from cellcolor.lab.families.meshes import grid_faces
-from cellcolor.painting.trees import TooNarrow, grow_trees
+from cellcolor.painting.trees import TooNarrow, Trees
 
 
 def grid(size: int) -> ClosedMesh:
@@ -25,7 +25,7 @@ def grown(vertices: Iterable[int], mesh: ClosedMesh, terminals: list[list[int]])
     around: dict[int, list[int]] = {}
     for a, b in mesh.third:
         around.setdefault(a, []).append(b)
-    return grow_trees(vertices, around, mesh.third, lambda _a, _b: False, terminals)
+    return Trees(vertices, around, mesh.third, lambda _a, _b: False, terminals).grown()
 
 
 def trees(size: int, terminals: list[list[int]]) -> dict[int, int]:
@@ -116,7 +116,7 @@ def test_a_tree_goes_round_the_free_end_of_a_crack() -> None:
         sides = {a % 7, b % 7} == {2, 3}
         return max(a, b) < 49 and sides and max(a // 7, b // 7) <= 4
 
-    found = grow_trees(range(49), around, mesh.third, cracked, [[2, 3], [1, 5], [0]])
+    found = Trees(range(49), around, mesh.third, cracked, [[2, 3], [1, 5], [0]]).grown()
     assert {found[v] for v in (2, 3)} == {0} and {found[v] for v in (1, 5)} == {1}
     for number in (0, 1):
         own = {vertex for vertex, tree in found.items() if tree == number}
@@ -141,4 +141,4 @@ def test_trees_end_with_their_deadline() -> None:
     for a, b in mesh.third:
         around.setdefault(a, []).append(b)
     with pytest.raises(OutOfTime):
-        grow_trees(range(49), around, mesh.third, lambda _a, _b: False, [[1, 5]], Deadline(0.0))
+        Trees(range(49), around, mesh.third, lambda _a, _b: False, [[1, 5]], Deadline(0.0)).grown()
