@@ -19,13 +19,7 @@ _INSET = 0.5  # spacings: how far from the border lines end
 
 
 def lay_back_and_forth(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
-    """Lines at equal distances from one in the middle, each walked once, the nearest one next.
-
-    Args:
-        mesh: a connected part of a segment.
-        spacing: between neighboring lines, m.
-        deadline: when to give up.
-    """
+    """Lines at equal distances from one in the middle, each walked once, the nearest one next."""
     mesh = mesh.refined(FINEST * spacing)
     if mesh.border.any():  # the line along which lines end is there to be walked along
         mesh = slice_along(mesh, mesh.from_border, np.array([_INSET * spacing])).mesh
@@ -39,9 +33,7 @@ def lay_back_and_forth(mesh: Triangles, spacing: float, deadline: Deadline) -> L
     mesh = sliced.mesh
     lines = sorted(level_lines(sliced), key=lambda line: line.level)
     rows = [row for line in lines for row in _inside(mesh, line, spacing)]
-    if not rows:
-        return Laid(mesh, [])
-    return Laid(mesh, _one_after_the_other(mesh, rows, spacing, deadline))
+    return Laid(mesh, _one_after_the_other(mesh, rows, spacing, deadline) if rows else [])
 
 
 def _inside(mesh: Triangles, line: LevelLine, spacing: float) -> list[tuple[list[int], bool]]:

@@ -37,11 +37,7 @@ def lay_contours(
 
     On a closed mesh the distance is from a vertex, and the first loop goes round it.
 
-    Args:
-        mesh: a connected part of a segment.
-        spacing: between neighboring loops, m.
-        deadline: when to give up.
-        join: makes one path of the loops.
+    ``join`` makes one path of the loops.
     """
     mesh = mesh.refined(FINEST * spacing)
     deadline.check()
@@ -86,20 +82,13 @@ def _straight_border(mesh: Triangles, spacing: float) -> tuple[Index, Array]:
 
 
 def lay_loops(
-    mesh: Triangles,
-    distances: Array,
-    spacing: float,
-    deadline: Deadline,
-    join: Join = join_loops,
+    mesh: Triangles, distances: Array, spacing: float, deadline: Deadline, join: Join = join_loops
 ) -> Laid:
     """Join the loops at half a spacing, one and a half, and so on of a field of distances.
 
     Args:
         mesh: a connected part of a segment, refined.
         distances: (n,) at the border less than ``_NARROWEST`` / 2 spacings, m.
-        spacing: between neighboring loops, m.
-        deadline: when to give up.
-        join: makes one path of the loops.
     """
     deadline.check()
     spacing = _fitting(float(distances.max()), spacing)

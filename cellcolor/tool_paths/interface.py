@@ -24,4 +24,5 @@ class Laid:
 
 
 Pattern = Callable[[Triangles, float, Deadline], Laid]
-"""Lays a path on a connected mesh, given the wanted spacing in metres."""
+"""Lays a path on a connected part of a segment, given the wanted spacing between passes in m and a
+deadline, which it looks at."""

@@ -89,7 +89,6 @@ def join_loops(mesh: Triangles, rows: list[Index], gap: float, deadline: Deadlin
         mesh: on which the loops are rows of edges; connected.
         rows: the loops.
         gap: wanted distance between the two bridges of a door, m.
-        deadline: when to give up.
     """
     loops, doors = doors_between(mesh, rows, gap)
     deadline.check()

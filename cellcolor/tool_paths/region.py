@@ -58,7 +58,8 @@ def regions_of(
     """
     mesh, vertex_count = surface.mesh, len(surface.vertices)
     color_of = np.array([*colors, -1], dtype=np.int64)[segment_of]
-    closed = _closed_edges(surface, color_of, walls)
+    cracks = [(crack.i, crack.j) for crack in surface.cracks if color_of[crack.i] in crack.colors]
+    closed = mesh.marked([*cracks, *walls])
     fine, _ = small_triangles(mesh)
     small = fine.corners
     kept = np.repeat(segment_of[mesh.corners].ravel() >= 0, 2)
@@ -115,14 +116,6 @@ def kept_parts(mesh: Triangles, kept: Mask) -> list[tuple[Index, Triangles]]:
     other = other // 3
     joined = kept[other].all(axis=1)
     return parts_of(mesh, kept, mesh.edges[inner[joined]], other[joined])
-
-
-def _closed_edges(
-    surface: LabelledSurface, color_of: Index, walls: Collection[tuple[int, int]]
-) -> Mask:
-    """Which mesh edges must not be crossed between the two ends' parts."""
-    cracks = [(crack.i, crack.j) for crack in surface.cracks if color_of[crack.i] in crack.colors]
-    return surface.mesh.marked([*cracks, *walls])
 
 
 def _cut_vertices(small: Index, sides: Index, other: Index) -> Index:

@@ -61,13 +61,7 @@ def line_of(laid: Laid) -> Line:
 
 
 def rounded(laid: Laid, spacing: float, deadline: Deadline) -> Line:
-    """A walk as a line with rounded corners. Its first and its last point stay.
-
-    Args:
-        laid: a walk along the edges of a mesh.
-        spacing: between passes, m.
-        deadline: when to give up.
-    """
+    """A walk as a line with rounded corners. Its first and last point stay."""
     line = line_of(laid)
     lengths = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(lengths)])

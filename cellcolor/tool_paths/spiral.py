@@ -33,13 +33,7 @@ _BEGINNINGS = 24  # places of the innermost loop from which a spiral is tried
 
 
 def lay_spiral(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
-    """Loops as in ``contour``, the longest chain of them joined into a spiral.
-
-    Args:
-        mesh: a connected part of a segment.
-        spacing: between neighboring loops, m.
-        deadline: when to give up.
-    """
+    """Loops as in ``contour``, the longest chain of them joined into a spiral."""
     return lay_contours(mesh, spacing, deadline, wind)
 
 
@@ -55,7 +49,6 @@ def wind(mesh: Triangles, rows: list[Index], gap: float, deadline: Deadline) -> 
         mesh: on which the loops are rows of edges; connected.
         rows: the loops.
         gap: wanted distance between the two bridges of a door, m.
-        deadline: when to give up.
     """
     loops, doors = doors_between(mesh, rows, gap)
     if min(loop.length for loop in loops) <= 0:  # vertices may coincide

@@ -48,11 +48,6 @@ def with_spurs(laid: Laid, spacing: float, deadline: Deadline) -> Laid:
     """The same path with bends and spurs to all that is too far from it.
 
     Where the pattern found no room for a path there is one along the part, and spurs from it.
-
-    Args:
-        laid: what a pattern has made.
-        spacing: desired between passes, m.
-        deadline: when to give up.
     """
     mesh = laid.mesh
     weights = off_border(mesh, spacing / 2)
@@ -81,8 +76,13 @@ def with_spurs(laid: Laid, spacing: float, deadline: Deadline) -> Laid:
 
 def _short_of(mesh: Triangles, way: list[int], length: float) -> int:
     """The place on a way that is so far from its beginning, but not its last one."""
-    lengths = np.linalg.norm(np.diff(mesh.points[way], axis=0), axis=1)
-    return min(int(np.searchsorted(np.cumsum(lengths), length)), len(way) - 2)
+    return min(int(np.searchsorted(_lengths_along(mesh, way)[1:], length)), len(way) - 2)
+
+
+def _lengths_along(mesh: Triangles, way: list[int]) -> Array:
+    """How far each vertex of a way is from its beginning, m."""
+    steps = np.linalg.norm(np.diff(mesh.points[way], axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def _bends(
@@ -101,8 +101,7 @@ def _bends(
         Bends that replace a piece each, by the numbers of the ways, and the numbers of ways whose
         pieces overlap theirs.
     """
-    lengths = np.linalg.norm(np.diff(mesh.points[walk], axis=0), axis=1)
-    along = np.concatenate([[0.0], np.cumsum(lengths)])
+    along = _lengths_along(mesh, walk)
     bases = np.array([along[walk.index(way[-1])] for way in ways])
     firsts = np.searchsorted(along, bases - _HALF * spacing)
     lasts = np.searchsorted(along, bases + _HALF * spacing)
@@ -178,9 +177,7 @@ def _along(mesh: Triangles, weights: Array, spacing: float) -> list[int]:
     one = int(ways_from(graph, np.array([0])).lengths.argmax())
     ways = ways_from(graph, np.array([one]))
     way = ways.back_from(int(ways.lengths.argmax()))
-    lengths = np.concatenate(
-        [[0.0], np.cumsum(np.linalg.norm(np.diff(mesh.points[way], axis=0), axis=1))]
-    )
+    lengths = _lengths_along(mesh, way)
     off = min(spacing / 2, lengths[-1] / 4)
     inner = [v for v, at in zip(way, lengths, strict=True) if off <= at <= lengths[-1] - off]
     return inner if len(inner) > 1 else way[: max(2, len(way) // 2 + 1)]

@@ -13,13 +13,7 @@ from cellcolor.tool_paths.triangles import Triangles
 
 
 def lay_tree(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
-    """Cut the region in strips of two spacings, go round each, and join these along a tree.
-
-    Args:
-        mesh: a connected part of a segment.
-        spacing: between neighboring passes, m.
-        deadline: when to give up.
-    """
+    """Cut the region in strips of two spacings, go round each, and join these along a tree."""
     mesh, field = sweep_field(mesh.refined(FINEST * spacing))
     deadline.check()
     low, high = float(field.min()), float(field.max())

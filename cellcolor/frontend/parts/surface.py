@@ -42,9 +42,9 @@ class Surface:
 
     def placed(self, placement: Placement) -> Surface:
         """The same surface in the world."""
-        rotation = rotation_from_rpy(*placement.rpy_rad)
-        vertices = self.vertices @ rotation.T + np.array(placement.position_m)
-        return replace(self, vertices=vertices, normals=self.normals @ rotation.T)
+        turn = rotation_from_rpy(*placement.rpy_rad)
+        vertices = placement.placed(self.vertices)
+        return replace(self, vertices=vertices, normals=self.normals @ turn.T)
 
     def taken_along(self, before: Placement, after: Placement) -> Surface:
         """This surface, already placed, after its part has been moved to another placement."""
