@@ -37,11 +37,7 @@ _LONGEST_FIRST: _Pieces = {  # ab, which is cut if any is
 
 
 def new_points(mesh: TriangleMesh, marked: Mask) -> Index:
-    """The number (k,) of the new point on each marked edge, -1 on the others; after the old ones.
-
-    Args:
-        marked: (k,) which edges get one.
-    """
+    """The number of the new point on each marked edge (k,), after the old ones; -1 on others."""
     number = np.full(len(marked), -1, dtype=np.int64)
     number[marked] = len(mesh.points) + np.arange(np.count_nonzero(marked))
     return number
@@ -78,10 +74,7 @@ def cut(
 
 
 def halved(mesh: TriangleMesh, marked: Mask) -> tuple[TriangleMesh, Index]:
-    """A mesh with edges cut in the middle; the new points come last, in the order of their edges.
-
-    Args:
-        marked: (k,) which edges.
+    """A mesh with marked edges (k,) cut in the middle; new points last, in the order of edges.
 
     Returns:
         The finer mesh, and the triangle of the mesh that each of its triangles is a piece of.
@@ -103,10 +96,9 @@ def with_longest_sides(mesh: TriangleMesh, marked: Mask) -> Mask:
 
 
 def bisected_corners(mesh: TriangleMesh, marked: Mask) -> Index:
-    """The triangles (p, 3) once marked edges are bisected, in each the longest side first.
+    """The triangles (p, 3) once marked edges (k,) are bisected, in each the longest side first.
 
-    Args:
-        marked: (k,) which edges, see :func:`with_longest_sides`.
+    The longest sides are marked, see :func:`with_longest_sides`.
     """
     names = _from(_longest(mesh), mesh.corners, new_points(mesh, marked)[mesh.edge_of_side])
     return _pieces(names, _LONGEST_FIRST)[0]

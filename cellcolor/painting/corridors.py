@@ -31,11 +31,9 @@ def within(
     reach: float,
     deadline: Deadline = NEVER,
 ) -> dict[int, float]:
-    """The vertices within a distance of some along the surface, and how far, m (Dijkstra).
+    """The vertices within ``reach`` of some along the surface, and how far they are, m (Dijkstra).
 
-    Args:
-        starts: distances to begin with, and vertices.
-        reach: the largest distance, m.
+    ``starts`` are distances to begin with, and vertices.
     """
     queue = list(starts)
     heapify(queue)

@@ -16,9 +16,7 @@ from cellcolor.painting.refined import Refined
 def subcells_on_surface(cell: CellDivision, seams: set[int]) -> list[WholeSubCell]:
     """The sub-cells of a cell that cross an edge of it; if none does, one of them.
 
-    Args:
-        cell: the cell's division, its loops merged into one cyclic list by seams.
-        seams: the seams' ids.
+    The cell's loops are merged into one cyclic list by seams, which are given by their ids.
     """
     whole = whole_subcells(cell, seams)
     return [subcell for subcell in whole if subcell.strands] or whole[:1]
@@ -30,7 +28,6 @@ def steps_by_edge(
     """The steps of each topological edge on the refined mesh, its left cell on their left.
 
     Args:
-        refined: the refinement.
         old_curves: the edges on the surface that was refined, by their ids.
         curves: the edges on the refined surface, in any order and direction.
     """

@@ -100,9 +100,7 @@ def unrefined(surface: LabelledSurface) -> Refined:
 def interpolated(between: Index, values: Array) -> Array:
     """Values (m, ...) of the old vertices carried over to all (n, ...), halfway to new vertices.
 
-    Args:
-        between: (n, 2) of a refinement of m vertices, see :attr:`Refined.between`.
-        values: one row for each old vertex.
+    ``between`` (n, 2) is that of a refinement of m vertices, see :attr:`Refined.between`.
     """
     found = np.empty((len(between), *values.shape[1:]))
     first = len(values)

@@ -211,9 +211,7 @@ def check_spacing(surface: LabelledSurface, segment_of: Index, spacing_m: float)
     """Refuse a spacing that is larger than every segment; small segments may be among them.
 
     Args:
-        surface: the painted surface.
         segment_of: (n,) the segment of each vertex, -1 where it has none: all segments of it.
-        spacing_m: desired distance between neighboring passes, m.
 
     Raises:
         InputError: it is larger.

@@ -55,8 +55,6 @@ def evened(mesh: Triangles, values: Array, length: float) -> Array:
     is not asked about.
 
     Args:
-        mesh: where the field is.
-        values: (n,) of it.
         length: waves of six times that length are made half as high, m.
     """
     corners = mesh.points[mesh.corners]
@@ -86,11 +84,8 @@ def evened(mesh: Triangles, values: Array, length: float) -> Array:
 def off_border(mesh: Triangles, room: float) -> Array:
     """Weights (e,) of edges, m: their lengths, up to tripled near the border of the mesh.
 
-    With these weights shortest ways stay in the middle of narrow places.
-
-    Args:
-        mesh: the mesh.
-        room: at this distance from the border and beyond, weights are lengths, m.
+    With these weights shortest ways stay in the middle of narrow places. At the distance ``room``
+    from the border, m, and beyond, weights are lengths.
     """
     if not mesh.border.any():
         return mesh.lengths

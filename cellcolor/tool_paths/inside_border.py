@@ -99,12 +99,9 @@ def _round(
 ) -> list[tuple[int, int]] | None:
     """The way round a vertex of the border, from one triangle at it to another.
 
-    Args:
-        behind: where the way comes from, along the border; a corner of the first triangle.
-
-    Returns:
-        The other ends of the edges that are crossed, each with the triangle before it. None where
-        the triangles at the vertex are not connected, as where parts touch in a point.
+    It comes along the border from ``behind``. Returned are the other ends of the edges that are
+    crossed, each with the triangle before it; None where the triangles at the vertex are not
+    connected, as where parts touch in a point.
     """
     spokes, triangle = list[tuple[int, int]](), first
     while triangle != last:

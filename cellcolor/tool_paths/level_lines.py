@@ -45,11 +45,8 @@ class LevelLine:
 def slice_along(mesh: Triangles, values: Array, levels: Array) -> Sliced:
     """Cut triangles along the level lines of a field that is linear in each.
 
-    Args:
-        mesh: what to slice.
-        values: (n,) the field.
-        levels: ascending. A value on a level or just beside it is moved off, so that lines
-            run through no vertex and never touch each other.
+    Levels ascend. A value (n,) on one or just beside it is moved off, so that lines run through no
+    vertex and never touch each other.
     """
     if not len(levels):
         return Sliced(mesh, values, np.full(len(mesh.points), -1, dtype=np.int64))

@@ -80,8 +80,7 @@ def clipped(
 
     Args:
         mesh: a connected part of the segment's own area and what is around it.
-        surface: the painted surface.
-        own: (n,) its vertices in the segment.
+        own: (n,) the surface's vertices in the segment.
         beyond: (n,) how far the region may go beyond the part of each, m.
         finest: sides of triangles beyond the segment's border, m.
     """

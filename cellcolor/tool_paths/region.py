@@ -49,12 +49,7 @@ def regions_of(
 ) -> tuple[Region, ...]:
     """The connected parts of all segments, by segment, the largest of each first.
 
-    Args:
-        surface: the painted surface.
-        segment_of: (n,) the segment of each vertex, -1 where it has none.
-        colors: of each segment.
-        normals: (n, 3) outward unit normals at the vertices.
-        walls: mesh edges that are not to be crossed, like cracks of whatever segment is there.
+    The arguments are those of :func:`~cellcolor.tool_paths.cover.cover`.
     """
     mesh, vertex_count = surface.mesh, len(surface.vertices)
     color_of = np.array([*colors, -1], dtype=np.int64)[segment_of]

@@ -17,9 +17,6 @@ def sweep_field(mesh: Triangles) -> tuple[Triangles, Array]:
     between the two. The one that the part is narrowest along is kept, and its line 0 is where
     distances are measured from, so that level lines are parallel on a curved surface as well.
 
-    Args:
-        mesh: a connected part of a segment.
-
     Returns:
         The mesh with the middle line among its edges, and the field, from its least to its
         greatest value where the part is narrow.

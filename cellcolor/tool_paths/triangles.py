@@ -84,7 +84,6 @@ def split_at(mesh: Triangles, split: Mask, shares: Array | float) -> tuple[Trian
     """A new vertex on each of some edges, and the triangles cut between them.
 
     Args:
-        mesh: what to cut.
         split: (e,) which edges get a new vertex.
         shares: (e,) where on each edge, 0 at its first end and 1 at its second; or on all of them.
 

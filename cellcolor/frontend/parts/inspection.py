@@ -115,12 +115,9 @@ class Inspection:
     def _faults(self) -> list[tuple[str, str]]:
         facts = self.facts
         holes = [f"{1e3 * hole.length_m:.3g} mm long at {_at(hole.place)}" for hole in facts.holes]
-        crossings = facts.crossings
-        crossing = (
-            "not looked for: too many faces, or too uneven"
-            if crossings is None
-            else (_listed("pair", [_at(place) for place in crossings]))
-        )
+        crossing = "not looked for: too many faces, or too uneven"
+        if facts.crossings is not None:
+            crossing = _listed("pair", list(map(_at, facts.crossings)))
         return [
             ("holes", _listed("border", holes)),
             (

@@ -78,11 +78,8 @@ class Tolerance(Table):
     def displaced(self, placement: Placement, center: Array) -> list[Placement]:
         """A sample of placements, always the same, all with the largest displacement and turn.
 
-        Directions and axes are opposite in pairs, so that no side is favored.
-
-        Args:
-            placement: where the part should stand.
-            center: (3,) of the part, in the world, m.
+        Directions and axes are opposite in pairs, so that no side is favored. The part's center
+        (3,) is in the world, m.
         """
         return self.drawn(placement, center, np.random.default_rng(_SEED), at_most=False)
 

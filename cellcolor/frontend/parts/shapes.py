@@ -145,7 +145,6 @@ def spherical_cap(radius: float, half_angle: float, disc: Array, faces: Faces) -
     """A cap of a sphere about +z, centered on the origin.
 
     Args:
-        radius: of the sphere, m.
         half_angle: between the axis and the rim, rad.
         disc, faces: mesh of the unit disc, its first vertex in the center.
     """
@@ -161,9 +160,7 @@ def pipe(radius: float, arc: float, length: float, grid: Array, faces: Faces) ->
     """Part of the outside of a pipe along y, its crown at +z.
 
     Args:
-        radius: m.
         arc: angle from edge to edge, rad.
-        length: along the axis, m.
         grid, faces: mesh of the rectangle from (0, 0) to (radius * arc, length).
     """
     angle = grid[:, 0] / radius - arc / 2
@@ -175,9 +172,7 @@ def pipe(radius: float, arc: float, length: float, grid: Array, faces: Faces) ->
 def rectangle(size_x: float, size_y: float, grid: Array, faces: Faces) -> Surface:
     """A flat rectangle in z = 0, centered on the origin, its outside at +z.
 
-    Args:
-        size_x, size_y: m.
-        grid, faces: mesh of the rectangle from (0, 0) to (size_x, size_y).
+    ``grid`` and ``faces`` are a mesh of the rectangle from (0, 0) to (size_x, size_y).
     """
     vertices = np.column_stack([grid - [size_x / 2, size_y / 2], np.zeros(len(grid))])
     return Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (len(grid), 1)))
