@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import dijkstra
 
 from cellcolor.arrays import Index
 from cellcolor.deadline import Deadline
 from cellcolor.tool_paths.contour import EVENED, FINEST
-from cellcolor.tool_paths.distances import evened, off_border
+from cellcolor.tool_paths.distances import evened, off_border, ways_from
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.level_lines import LevelLine, level_lines, slice_along
 from cellcolor.tool_paths.sweep import sweep_field
@@ -87,10 +86,7 @@ def _nearest(graph: csr_matrix, start: int, owner: Index, spacing: float) -> lis
     """The shortest way to an end of a line that is still to be walked."""
     ends = np.flatnonzero(owner >= 0)
     for limit in (4 * spacing, 16 * spacing, np.inf):
-        lengths, before = dijkstra(graph, indices=start, limit=limit, return_predecessors=True)
-        if np.isfinite(lengths[ends]).any():
+        ways = ways_from(graph, np.array([start]), limit)
+        if np.isfinite(ways.lengths[ends]).any():
             break
-    way = [int(ends[lengths[ends].argmin()])]
-    while way[-1] != start:
-        way.append(int(before[way[-1]]))
-    return way[::-1]
+    return ways.back_from(int(ends[ways.lengths[ends].argmin()]))[::-1]
