@@ -258,14 +258,7 @@ def _answered(
     deadline: Deadline,
     progress: Callable[[str], None] | None = None,
 ) -> AnsweredScene:
-    """What a plan's page tells besides, as far as there is time.
-
-    Args:
-        names: of the questions.
-        subject: a scene, built, nothing left out.
-        deadline: when to return the answers so far.
-        progress: told what is being done.
-    """
+    """What a plan's page tells besides of a built scene, as far as there is time."""
     from cellcolor.pictures.report_page.content import AnsweredScene
     from cellcolor.questions.setting_up import candidates_of, plan_of
 

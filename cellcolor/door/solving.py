@@ -242,13 +242,7 @@ def _tolerance_in_words(subject: Subject) -> tuple[str, ...]:
 
 
 def _with_raw_minimum(solution: Solution, subject: Subject, options: Options) -> Solution:
-    """The solution with a note on the whole surface, where a scene's slivers were given up.
-
-    Args:
-        solution: of the scene without its slivers.
-        subject: what was solved.
-        options: how; the raw surface gets ten seconds of the time that is left.
-    """
+    """The solution with a note on the whole surface, where a scene's slivers were given up."""
     built = subject.built
     raw = None if built is None else built.raw_surface
     if built is None or raw is None:

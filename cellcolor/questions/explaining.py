@@ -164,11 +164,7 @@ class _Asked:
     def _relaxed(
         self, what: Sequence[Relaxation], known: _Known, rest: Sequence[Relaxation]
     ) -> _Known:
-        """The scene without these things, judged from a stricter one that is known.
-
-        Args:
-            rest: those of the things that the known scene still asks for.
-        """
+        """The scene without these things, from a stricter one that still asks for ``rest``."""
         try:
             if not self._quick or any(one.reasons is None for one in what):
                 relaxed = without(self._prepared, what)
@@ -191,11 +187,7 @@ class _Asked:
         return self._freer[first], [one for one in what if one != first]
 
     def _without_some(self, one: Relaxation, amount: float, less: _Known) -> _Known:
-        """The scene with a thing weakened by an amount.
-
-        Args:
-            less: the scene with it weakened by less, to judge from.
-        """
+        """The scene with a thing weakened by an amount, judged from one where it is less weak."""
         some = one.by(amount)
         if one in self._freer and some.reasons is None:
             found = self._again(judged_asking_more, self._freer[one], [some], _reasons_of([one]))
@@ -357,12 +349,7 @@ def _same(first: Stages, second: Stages) -> bool:
 
 
 def _reasons_at(prepared: PreparedScene, stages: Stages, point: Array) -> tuple[BranchHere, ...]:
-    """What each branch does at the vertex nearest to a point (3,), and where its color ends.
-
-    Args:
-        stages: of its surface.
-        point: in the world, m.
-    """
+    """What each branch does at the vertex nearest to a point in m, and where its color ends."""
     vertices, coloring = prepared.surface.vertices, stages.cleaned.coloring
     away = np.linalg.norm(vertices - point, axis=1)
     here = int(np.argmin(away))
