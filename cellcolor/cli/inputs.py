@@ -95,9 +95,9 @@ def read_subject(path: Path, deadline: Deadline = NEVER, tolerance: str | None =
     return subject
 
 
-def read_instance(path: Path, deadline: Deadline = NEVER) -> Instance:
+def read_instance(path: Path) -> Instance:
     """An instance from anything that can be solved; see :func:`read_subject`."""
-    return read_subject(path, deadline).graph(deadline)
+    return read_subject(path).graph()
 
 
 @contextmanager

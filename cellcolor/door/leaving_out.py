@@ -61,10 +61,7 @@ class Wanted:
 
 
 def rest_of(
-    subject: Subject,
-    wanted: Wanted,
-    options: Options,
-    progress: Callable[[str], None] | None = None,
+    subject: Subject, wanted: Wanted, options: Options
 ) -> tuple[Subject, tuple[str, ...], float]:
     """A subject without what is left out on purpose.
 
@@ -73,7 +70,6 @@ def rest_of(
         wanted: what has to be covered.
         options: deadline, workers and seed of the search for what is best left out, which takes
             half of the time that is left.
-        progress: told what is being done.
 
     Returns:
         What has to be covered, as a subject like any other; notes on what is left out, a sentence
@@ -94,7 +90,7 @@ def rest_of(
     if wanted.whole or subject.graph(options.deadline).nothing_to_cover:
         return subject, notes, 1.0
     options = replace(options, deadline=options.deadline.share(_FOR_FRONT))
-    front = front_on(subject, None, wanted.required, options, progress)
+    front = front_on(subject, None, wanted.required, options)
     if wanted.cover is None:
         choice = front.cheapest(wanted.objective)
         point = choice.point
