@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Annotated, Any
 
 from annotated_types import Ge, Le
@@ -53,8 +53,4 @@ class Coverage(Value):
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
-        return {
-            "area_m2": self.area_m2,
-            "unreachable": self.unreachable,
-            "given_up": self.given_up,
-        }
+        return asdict(self)
