@@ -211,33 +211,18 @@ class Instance(Document):
     def _body(self) -> dict[str, Any]:
         """The JSON object without its format and version."""
         document: dict[str, Any] = {"name": self.name, "colors": list(self.colors)}
-        document["cells"] = [
-            _given(
-                {"id": c.id, "colors": c.colors, "loops": c.loops},
-                area=c.area,
-            )
-            for c in self.cells
-        ]
-        document["edges"] = [
-            _given({"id": e.id, "left": e.left, "right": e.right}, colors=e.colors, length=e.length)
-            for e in self.edges
-        ]
+        document["cells"] = [_given(cell) for cell in self.cells]
+        document["edges"] = [_given(edge) for edge in self.edges]
         if self.meta is not None:
             document["meta"] = self.meta
         if self.surface is not None:
-            document["surface"] = _given(
-                {"path": self.surface.path, "vertex_cell": self.surface.vertex_cell},
-                sha256=self.surface.sha256,
-            )
+            document["surface"] = _given(self.surface)
         if self.coverage is not None:
             document["coverage"] = self.coverage.to_document()
         if self.known is not None:
-            results = {
-                space: _given({"segments": result.segments}, schemes=result.schemes)
-                for space, result in (("paper", self.known.paper), ("surface", self.known.surface))
-                if result is not None
+            document["known"] = {
+                space: _given(result) for space, result in _given(self.known).items()
             }
-            document["known"] = results
         return document
 
     @cached_property
@@ -279,8 +264,10 @@ class Instance(Document):
         return instance
 
 
-def _given(document: dict[str, Any], **optional: object) -> dict[str, Any]:
-    return document | {name: value for name, value in optional.items() if value is not None}
+def _given(value: Any) -> dict[str, Any]:
+    """The members of a dataclass with slots that are not None, in their order."""
+    members = [(name, getattr(value, name)) for name in value.__slots__]
+    return {name: content for name, content in members if content is not None}
 
 
 def _fingerprint_of_version_1(body: dict[str, Any]) -> str:
