@@ -16,8 +16,7 @@ from cellcolor.frontend.arm.inverse import is_tool_on_last_axis, pose_at_zero
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult
 from cellcolor.memory import chunks
-from cellcolor.trajectory_checker.dense import poses_of
-from cellcolor.trajectory_checker.joint_steps import joint_steps
+from cellcolor.trajectory_checker.dense import angles, joint_steps, poses_of
 from cellcolor.trajectory_checker.tolerances import AT_VERTEX, OFF_SURFACE, TILT, TURN
 from cellcolor.trajectory_checker.tool_turn import across_of, turns_off
 
@@ -121,10 +120,9 @@ def at_vertices(
     _check_width(robot, joints)
     tips, axes = poses_of(robot, joints, deadline)
     off = np.linalg.norm(tips - surface.vertices[vertex], axis=1)
-    chord = np.linalg.norm(axes + surface.normals[vertex], axis=1)
-    tilt = 2 * np.arcsin(np.clip(chord / 2, 0.0, 1.0))
-    if not robot.task.direction:
-        tilt = np.zeros(len(joints))
+    tilt = np.zeros(len(joints))
+    if robot.task.direction:
+        tilt = angles(axes, -surface.normals[vertex])
     compared = _compared(robot)
     branch, apart = np.zeros(len(joints), dtype=np.int64), np.full(len(joints), np.inf)
     for rows in chunks(len(joints), 64 * robot.joints * len(built.branches)):

@@ -16,7 +16,7 @@ from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.trajectory_checker.area import judge_area
 from cellcolor.trajectory_checker.claims import judge_lift_offs
-from cellcolor.trajectory_checker.dense import Dense, densified, poses_of
+from cellcolor.trajectory_checker.dense import densified, poses_of
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.file_poses import judge_poses
 from cellcolor.trajectory_checker.fine_mesh import refined
@@ -104,34 +104,8 @@ def check_trajectory(
             motion.spacing_m, motion.overlap_m, limits or Limits(), tells, faults, deadline,
         )  # fmt: skip
         notes += _given_up(built)
-    return _verdict(trajectory, dense, timed, minimum_lift_offs, faults, covered, notes)
-
-
-def _given_up(built: BuildResult) -> list[str]:
-    """What the shares covered do not speak of."""
-    areas, slivers = built.surface.vertex_areas, built.slivers
-    alone = [vertex for vertex in built.surface.given_up if not slivers[vertex]]
-    return [
-        f"Shares covered are of the area with a color; {share:.1%} of the surface has none because "
-        f"{why}."
-        for where, why in (
-            (slivers, "the sliver policy gave it up"),
-            (alone, "it is left alone on purpose"),
-        )
-        if (share := areas[where].sum() / areas.sum())
-    ]
-
-
-def _verdict(
-    trajectory: Trajectory,
-    dense: Dense,
-    timed: bool,
-    minimum: int | None,
-    faults: FaultList,
-    covered: CoveredArea | None,
-    notes: list[str],
-) -> TrajectoryVerdict:
     lift_offs, claimed = trajectory.lift_offs, len(trajectory.extra_lift_offs)
+    minimum = minimum_lift_offs
     return TrajectoryVerdict(
         name=trajectory.name,
         samples=len(trajectory.times),
@@ -148,6 +122,21 @@ def _verdict(
         covered=covered,
         notes=tuple(notes),
     )
+
+
+def _given_up(built: BuildResult) -> list[str]:
+    """What the shares covered do not speak of."""
+    areas, slivers = built.surface.vertex_areas, built.slivers
+    alone = [vertex for vertex in built.surface.given_up if not slivers[vertex]]
+    return [
+        f"Shares covered are of the area with a color; {share:.1%} of the surface has none because "
+        f"{why}."
+        for where, why in (
+            (slivers, "the sliver policy gave it up"),
+            (alone, "it is left alone on purpose"),
+        )
+        if (share := areas[where].sum() / areas.sum())
+    ]
 
 
 def _check_mesh(built: BuildResult) -> None:

@@ -1,4 +1,8 @@
-"""A trajectory with configurations put in wherever two samples are too far apart to be trusted."""
+"""A trajectory with configurations put in wherever two samples are too far apart to be trusted.
+
+The planner has a space of joints, and angles between vectors, of its own. The judge keeps the few
+lines here to itself on purpose: with the planner's it would not find the planner's faults.
+"""
 
 from __future__ import annotations
 
@@ -54,6 +58,25 @@ class Dense:
         return -self.axes
 
 
+def joint_steps(slides: Mask, first: Array, second: Array) -> Array:
+    """How far each joint (..., joints) has to move, from 0 on: rad modulo full circles, or m."""
+    way = second - first
+    around = np.remainder(way + np.pi, 2 * np.pi) - np.pi
+    return np.abs(np.where(slides, way, around))
+
+
+def angles(one: Array, other: Array) -> Array:
+    """Angles (k,) between unit vectors (k, 3), rad."""
+    chord = np.linalg.norm(one - other, axis=1)
+    return np.asarray(2 * np.arcsin(np.clip(chord / 2, 0.0, 1.0)))
+
+
+def strokes_of(contact: Mask) -> Index:
+    """The number of the stroke (k,) that each configuration is part of, -1 without contact."""
+    begins = contact & ~np.concatenate([[False], contact[:-1]])
+    return np.where(contact, np.cumsum(begins) - 1, -1)
+
+
 def poses_of(robot: Robot, joints: Array, deadline: Deadline) -> tuple[Array, Array]:
     """Tips and tool axes (k, 3) of configurations (k, joints)."""
     tips, axes = np.empty((len(joints), 3)), np.empty((len(joints), 3))
@@ -80,8 +103,8 @@ def densified(
     most = np.where(robot.slides, STEP, STEP_ANGLE)
     steps = (np.abs(np.diff(joints, axis=0)) / most).max(axis=1, initial=0.0)
     moved = np.linalg.norm(np.diff(tips, axis=0), axis=1) / STEP
-    turned = 2 * np.arcsin(np.clip(np.linalg.norm(np.diff(axes, axis=0), axis=1) / 2, 0, 1))
-    longest = np.maximum(np.maximum(steps, moved), turned / STEP_ANGLE)
+    turned = angles(axes[1:], axes[:-1]) / STEP_ANGLE
+    longest = np.maximum(np.maximum(steps, moved), turned)
     pieces = np.maximum(np.ceil(longest - _SLACK), 1).astype(np.int64)
     pieces[skip] = 1
     pieces = np.append(pieces, 1) if count else pieces
@@ -96,6 +119,4 @@ def densified(
     put_in = np.flatnonzero(number)
     all_tips[put_in], all_axes[put_in] = poses_of(robot, at[put_in], deadline)
     contact = trajectory.contact[sample] & (trajectory.contact[after] | (number == 0))
-    begins = contact & ~np.concatenate([[False], contact[:-1]])
-    stroke = np.where(contact, np.cumsum(begins) - 1, -1)
-    return Dense(sample, way, at, all_tips, all_axes, contact, stroke)
+    return Dense(sample, way, at, all_tips, all_axes, contact, strokes_of(contact))

@@ -10,6 +10,7 @@ from cellcolor.arrays import Array, Index
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.trajectory_checker.dense import angles
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import POSE_ANGLE, POSE_DISTANCE
 
@@ -46,16 +47,12 @@ def judge_poses(
 
 
 def _turned(robot: Robot, normals: Array, axes: Array) -> Array:
-    """How far stated normals (k, 3) are off those that tool axes give, (k,) in rad."""
-    return _angles(normals, -axes) if robot.task.direction else np.zeros(len(normals))
-
-
-def _angles(one: Array, other: Array) -> Array:
-    """Angles (k,) between vectors and unit vectors (k, 3), rad; 180 degrees for no vector."""
-    length = np.linalg.norm(one, axis=1)
-    unit = one / np.where(length > 0, length, 1.0)[:, None]
-    chord = np.linalg.norm(unit - other, axis=1)
-    return np.where(length > 0, 2 * np.arcsin(np.clip(chord / 2, 0.0, 1.0)), np.pi)
+    """How far stated normals (k, 3) are off those that tool axes give, (k,) in rad; pi for none."""
+    if not robot.task.direction:
+        return np.zeros(len(normals))
+    length = np.linalg.norm(normals, axis=1)
+    unit = normals / np.where(length > 0, length, 1.0)[:, None]
+    return np.where(length > 0, angles(unit, -axes), np.pi)
 
 
 def _swapped(trajectory: Trajectory, robot: Robot, wrong: Index) -> tuple[str, int | None]:

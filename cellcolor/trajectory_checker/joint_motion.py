@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from operator import le
 
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.trajectory import Trajectory
-from cellcolor.trajectory_checker.corners import corners
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
-from cellcolor.trajectory_checker.jerks import judge_jerks
 from cellcolor.trajectory_checker.tolerances import (
     ANGLE_ROUNDING,
     BOW,
     BOW_OF_SLIDE,
+    CYCLE,
     JUMP,
     POSE_ROUNDING,
     SHARE_OVER_LIMIT,
@@ -49,6 +50,13 @@ class JointLimits:
     def units(self) -> list[str]:
         """What the position of each joint is in."""
         return ["m" if slides else "rad" for slides in self.slides]
+
+    def text(self, does: str, found: Array, per: str, most: Array) -> Callable[[int, int], str]:
+        """What is said of a row and a joint where ``found`` (k, joints) exceeds what is allowed."""
+        units = self.units
+        return lambda k, joint: (
+            f"{does} {found[k, joint]:.4g} {units[joint]}/{per}, allowed: {most[joint]:.4g}"
+        )
 
 
 def judge_joints(
@@ -93,21 +101,12 @@ def judge_joints(
     jumps = (np.abs(steps) > JUMP) & (fast | together[:, None])
     _note_jumps(jumps, steps, trajectory.joint_names, units, tips, faults)
     fast &= ~jumps & ascending[:, None]
-    faults.add_joint_stretches(
-        "velocity",
-        fast,
-        np.abs(velocity),
-        lambda k, joint: (
-            f"moves at {abs(velocity[k, joint]):.4g} {units[joint]}/s, allowed: "
-            f"{limits.velocity[joint]:.4g}"
-        ),
-        tips,
-    )
+    speed = np.abs(velocity)
+    text = limits.text("moves at", speed, "s", limits.velocity)
+    faults.add_joint_stretches("velocity", fast, speed, text, tips)
     known = ascending & ~jumps.any(axis=1)
-    if limits.acceleration is not None and len(passed) > 1:
-        _judge_accelerations(trajectory, known, tips, limits, limits.acceleration, faults)
-    if limits.jerk is not None:
-        judge_jerks(trajectory, known, tips, limits.jerk, units, faults)
+    _judge_accelerations(trajectory, known, tips, limits, faults)
+    _judge_jerks(trajectory, known, tips, limits, faults)
     moves: Mask = ~np.any(jumps, axis=1)
     moves[[sample for sample in trajectory.unplanned if sample < len(moves)]] = False
     touching = trajectory.contact[1:] != trajectory.contact[:-1]
@@ -174,12 +173,7 @@ def _judge_tool_speed(
 
 
 def _judge_accelerations(
-    trajectory: Trajectory,
-    known: Mask,
-    tips: Array,
-    limits: JointLimits,
-    most: Array,
-    faults: FaultList,
+    trajectory: Trajectory, known: Mask, tips: Array, limits: JointLimits, faults: FaultList
 ) -> None:
     """Note samples where no smooth motion through the samples keeps the accelerations.
 
@@ -200,62 +194,118 @@ def _judge_accelerations(
     Args:
         known: (k - 1,) steps that are motions.
     """
-    times, joints = trajectory.times, trajectory.joints
+    times, joints, most = trajectory.times, trajectory.joints, limits.acceleration
+    if most is None or len(known) < 2:
+        return
+    # In which a velocity can change beside a line, and from one end of it to the other.
+    longest = np.sqrt(8 * np.where(limits.slides, BOW_OF_SLIDE, BOW) / most)
     for first, after in stretches(known):
         rows = first + corners(times[first : after + 1], joints[first : after + 1])
         passed = np.diff(times[rows])
         velocity = np.diff(joints[rows], axis=0) / passed[:, None]
-        rest = np.zeros((1, joints.shape[1]))
+        rest = np.zeros((1, joints.shape[1]))  # steps of no time
         if first == 0:
             passed, velocity = np.insert(passed, 0, 0.0), np.concatenate([rest, velocity])
             rows = np.insert(rows, 0, 0)
         if after == len(known):
             passed, velocity = np.append(passed, 0.0), np.concatenate([velocity, rest])
             rows = np.append(rows, len(times) - 1)
-        _note_accelerations(trajectory, rows, passed, velocity, tips, limits, most, faults)
+        if len(passed) < 2:
+            continue
+        # What a rounding of angles makes of a velocity; rest has none.
+        rounding = np.divide(ANGLE_ROUNDING, passed, where=passed > 0, out=np.zeros_like(passed))
+        rounding = rounding[:, None]
+        beside = np.minimum(passed[:, None], longest)
+        along = np.minimum(passed[:, None], 2 * longest)
+        between = (beside[1:] + beside[:-1]) / 2
+        found = np.abs(np.diff(velocity, axis=0)) / between
+        over = found > most * (1 + SHARE_OVER_LIMIT) + (rounding[1:] + rounding[:-1]) / between
+        if len(passed) > 2:
+            mean = (beside[2:] + along[1:-1] + beside[:-2]) / 4
+            off = np.abs(velocity[1:-1] - (velocity[2:] + velocity[:-2]) / 2) / mean
+            slack = (rounding[1:-1] + (rounding[2:] + rounding[:-2]) / 2) / mean
+            # Both ends of the middle step are at fault; it is noted where it begins.
+            over[:-1] |= off > most * (1 + SHARE_OVER_LIMIT) + slack
+            found[:-1] = np.maximum(found[:-1], off)
+        at_fault, excess = np.zeros(joints.shape, dtype=bool), np.zeros(joints.shape)
+        at_fault[rows[1:-1]], excess[rows[1:-1]] = over, found
+        text = limits.text("accelerates by", excess, "s²", most)
+        faults.add_joint_stretches("acceleration", at_fault, excess, text, tips)
 
 
-def _note_accelerations(
-    trajectory: Trajectory,
-    rows: Index,
-    passed: Array,
-    velocity: Array,
-    tips: Array,
-    limits: JointLimits,
-    most: Array,
-    faults: FaultList,
+def _judge_jerks(
+    trajectory: Trajectory, known: Mask, tips: Array, limits: JointLimits, faults: FaultList
 ) -> None:
-    """The same for steps (s,) between ``rows`` (s + 1,); those of no time are rest."""
-    if len(passed) < 2:
+    """Note samples where no smooth motion through the samples keeps the jerks.
+
+    Six times the third divided difference of four samples is a mean of the jerks between the first
+    and the last, for any smooth motion through them. From each corner of the motion, the three next
+    ones that are a cycle or more apart are taken. The arm rests before the first sample and after
+    the last. A velocity that changes at once between two long lines is left to the accelerations.
+
+    Args:
+        known: (k - 1,) steps that are motions.
+    """
+    most = limits.jerk
+    if most is None:
         return
-    # What a rounding of angles makes of a velocity; rest has none.
-    rounding = np.divide(ANGLE_ROUNDING, passed, where=passed > 0, out=np.zeros_like(passed))
-    rounding = rounding[:, None]
-    # In which a velocity can change beside a line, and from one end of it to the other.
-    longest = np.sqrt(8 * np.where(limits.slides, BOW_OF_SLIDE, BOW) / most)
-    beside = np.minimum(passed[:, None], longest)
-    along = np.minimum(passed[:, None], 2 * longest)
-    between = (beside[1:] + beside[:-1]) / 2
-    found = np.abs(np.diff(velocity, axis=0)) / between
-    over = found > most * (1 + SHARE_OVER_LIMIT) + (rounding[1:] + rounding[:-1]) / between
-    if len(passed) > 2:
-        mean = (beside[2:] + along[1:-1] + beside[:-2]) / 4
-        off = np.abs(velocity[1:-1] - (velocity[2:] + velocity[:-2]) / 2) / mean
-        slack = (rounding[1:-1] + (rounding[2:] + rounding[:-2]) / 2) / mean
-        # Both ends of the middle step are at fault; it is noted where it begins.
-        over[:-1] |= off > most * (1 + SHARE_OVER_LIMIT) + slack
-        found[:-1] = np.maximum(found[:-1], off)
     at_fault = np.zeros(trajectory.joints.shape, dtype=bool)
     excess = np.zeros(trajectory.joints.shape)
-    at = rows[1:-1]
-    at_fault[at], excess[at] = over, found
-    faults.add_joint_stretches(
-        "acceleration",
-        at_fault,
-        excess,
-        lambda k, joint: (
-            f"accelerates by {excess[k, joint]:.4g} {limits.units[joint]}/s², "
-            f"allowed: {most[joint]:.4g}"
-        ),
-        tips,
-    )
+    rest = CYCLE * np.arange(1, 4)
+    for first, after in stretches(known):
+        before, behind = 3 * (first == 0), 3 * (after == len(known))  # times at rest
+        moving = slice(first, after + 1)
+        rows = first + corners(trajectory.times[moving], trajectory.joints[moving])
+        rows = np.pad(rows, (before, behind), "edge")
+        times, joints = trajectory.times[rows], trajectory.joints[rows]
+        times[:before] -= rest[::-1][:before]
+        times[len(times) - behind :] += rest[:behind]
+        jerk, rounding, second = _jerks(times, joints)
+        over = jerk > most * (1 + SHARE_OVER_LIMIT) + rounding[:, None]
+        at = rows[second]
+        np.logical_or.at(at_fault, at, over)
+        np.maximum.at(excess, at, jerk)
+    text = limits.text("jerks by", excess, "s³", most)
+    faults.add_joint_stretches("jerk", at_fault, excess, text, tips)
+
+
+def _jerks(times: Array, joints: Array) -> tuple[Array, Array, Index]:
+    """Mean jerks (n, joints), what a rounding of angles adds (n,), and each second sample (n,)."""
+    four = [np.arange(len(times))]
+    for _ in range(3):
+        four.append(np.searchsorted(times, times[four[-1]] + CYCLE * (1 - 1e-9)))
+        four = [samples[four[-1] < len(times)] for samples in four]
+    jerk, rounding = np.zeros((len(four[0]), joints.shape[1])), np.zeros(len(four[0]))
+    for number, sample in enumerate(four):
+        others = [times[sample] - times[other] for other in four[:number] + four[number + 1 :]]
+        weight = 6 / np.prod(others, axis=0)
+        jerk += weight[:, None] * joints[sample]
+        rounding += np.abs(weight) * ANGLE_ROUNDING
+    return np.abs(jerk), rounding, four[1]
+
+
+def corners(times: Array, joints: Array) -> Index:
+    """The samples (c,) between which all joints move in proportion to time, up to rounding.
+
+    A sample is left out if the line from the last corner to some later sample passes it, and all
+    that lie between, within a rounding of angles: many samples of a slow bend keep some of them.
+    """
+    kept = [0]
+    # For rows of a few numbers, plain floats are many times faster than arrays.
+    at, rows = times.tolist(), joints.tolist()
+    low, high = [-np.inf] * joints.shape[1], [np.inf] * joints.shape[1]
+    for k, row in enumerate(rows[1:], 1):
+        begin = kept[-1]
+        passed = at[k] - at[begin]
+        slopes = [(there - here) / passed for here, there in zip(rows[begin], row, strict=True)]
+        fits = all(map(le, low, slopes)) and all(map(le, slopes, high))
+        if k > begin + 1 and not fits:
+            kept.append(k - 1)
+            passed = at[k] - at[k - 1]
+            slopes = [(there - here) / passed for here, there in zip(rows[k - 1], row, strict=True)]
+            low, high = [-np.inf] * len(row), [np.inf] * len(row)
+        rounding = ANGLE_ROUNDING / passed
+        low = [max(least, slope - rounding) for least, slope in zip(low, slopes, strict=True)]
+        high = [min(most, slope + rounding) for most, slope in zip(high, slopes, strict=True)]
+    kept.append(len(at) - 1)
+    return np.array(kept)

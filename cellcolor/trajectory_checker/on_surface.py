@@ -11,12 +11,11 @@ from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.memory import chunks
-from cellcolor.trajectory_checker.dense import Dense
+from cellcolor.trajectory_checker.dense import Dense, angles, joint_steps
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
-from cellcolor.trajectory_checker.joint_steps import joint_steps
 from cellcolor.trajectory_checker.tolerances import BRANCH, LEAVING, OFF_SURFACE, TILT
-from cellcolor.trajectory_checker.tool_turn import nearest_turns
+from cellcolor.trajectory_checker.tool_turn import turns_off
 
 _SAME = 1e-6  # rad, m; solutions so near to each other are one
 _PARTS = 16  # a step that seems to cross a crack is tested in so many parts: it may pass its end
@@ -47,8 +46,7 @@ def judge_contact(
         faults,
     )
     if direction:
-        chord = np.linalg.norm(dense.outward[rows] - located.normals, axis=1)
-        tilt = 2 * np.arcsin(np.clip(chord / 2, 0.0, 1.0))
+        tilt = angles(dense.outward[rows], located.normals)
         _note(
             "tilted",
             dense,
@@ -176,7 +174,7 @@ def _solutions(
     kinematics = prepared.kinematics
     if not isinstance(kinematics, TurnedKinematics):
         return prepared.arm.inverse(tips, axes, deadline), np.zeros(len(tips), dtype=np.int64)
-    number = nearest_turns(kinematics.turn, tips, axes, across)
+    number = np.argmin(turns_off(kinematics.turn, tips, axes, across), axis=1)
     return kinematics.solve_pose(tips, axes, across), number * len(kinematics.own.branches)
 
 

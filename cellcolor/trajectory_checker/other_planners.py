@@ -9,7 +9,7 @@ from cellcolor.data.trajectory_csv import TrajectoryTable
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.trajectory_checker.dense import poses_of
+from cellcolor.trajectory_checker.dense import poses_of, strokes_of
 from cellcolor.trajectory_checker.fault_list import stretches
 
 _REASON = "stated in the table"
@@ -33,9 +33,7 @@ def completed(table: TrajectoryTable, robot: Robot, deadline: Deadline = NEVER) 
         normals = -axes
     else:
         points, normals = table.poses[:, :3], table.poses[:, 3:]
-    begins = table.contact & ~np.concatenate([[False], table.contact[:-1]])
-    strokes = np.where(table.contact, np.cumsum(begins) - 1, -1)
-    segment = strokes if table.segment is None else table.segment
+    segment = strokes_of(table.contact) if table.segment is None else table.segment
     return Trajectory(
         name=table.name,
         joint_names=robot.joint_names,

@@ -42,11 +42,6 @@ def turns_off(turn: Turn, points: Array, directions: Array, across: Array) -> Ar
     return np.asarray(np.where(np.isnan(off), np.inf, off))
 
 
-def nearest_turns(turn: Turn, points: Array, directions: Array, across: Array) -> Index:
-    """Which of the turns that the setup gives is the nearest, (k,); see :func:`turns_off`."""
-    return np.asarray(np.argmin(turns_off(turn, points, directions, across), axis=1))
-
-
 def judge_turn(
     turn: Turn, dense: Dense, rows: Index, directions: Array, across: Array, faults: FaultList
 ) -> None:

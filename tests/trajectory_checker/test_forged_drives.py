@@ -22,7 +22,7 @@ import cellcolor
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.trajectory_checker.check import check_trajectory
-from cellcolor.trajectory_checker.corners import corners
+from cellcolor.trajectory_checker.joint_motion import corners
 from examples import examples
 
 pytestmark = pytest.mark.second
