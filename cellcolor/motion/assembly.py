@@ -15,7 +15,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.motion.retraced import retraced, stretches
-from cellcolor.motion.strokes import Stroke
+from cellcolor.motion.strokes import Parting, Stroke
 from cellcolor.motion.timing import Speeds, timed, within_jerks
 from cellcolor.motion.ways import Transfer
 
@@ -24,23 +24,16 @@ _NEAR = 0.01  # m, of the tip's way to and from contact, on which it keeps to th
 
 @dataclass
 class _Rows:
-    """The samples of a trajectory as they come."""
+    """The samples of a trajectory as they come: times, joints, points, normals and segments."""
 
-    times: list[Array] = field(default_factory=list)
-    joints: list[Array] = field(default_factory=list)
-    points: list[Array] = field(default_factory=list)
-    normals: list[Array] = field(default_factory=list)
-    segments: list[Index] = field(default_factory=list)
+    parts: list[tuple[Array, Array, Array, Array, Index]] = field(default_factory=list)
     count: int = 0
     now: float = 0.0
 
     def add(self, times: Array, joints: Array, points: Array, normals: Array, segment: int) -> None:
         """Samples; their times are those of the trajectory."""
-        self.times.append(times)
-        self.joints.append(joints)
-        self.points.append(points)
-        self.normals.append(normals)
-        self.segments.append(np.full(len(times), segment, dtype=np.int64))
+        segments = np.full(len(times), segment, dtype=np.int64)
+        self.parts.append((times, joints, points, normals, segments))
         self.count += len(times)
 
 
@@ -80,7 +73,12 @@ def assembled(
     extra: list[ExtraLiftOff] = []
     repeated: list[RepeatedStretch] = []
     last_of: dict[int, int] = {}
-    partings, marked = _partings(strokes), _retraced(strokes, spacing)
+    marked = _retraced(strokes, spacing)
+    # Why segments have more than one stroke, as often as they have more.
+    partings: dict[int, list[Parting]] = {}
+    for stroke in strokes:
+        if stroke.parting is not None:
+            partings.setdefault(stroke.segment, []).append(stroke.parting)
     for number, transfer in enumerate(transfers):
         deadline.check()
         at_stroke = 1 if number else 0  # the first sample is the stroke's last one
@@ -93,16 +91,9 @@ def assembled(
             break
         stroke = strokes[number]
         if stroke.segment in last_of:
-            parting = partings[stroke.segment].pop(0)
-            extra.append(
-                ExtraLiftOff(
-                    last_of[stroke.segment],
-                    stroke.segment,
-                    parting.reason,
-                    parting.text,
-                    parting.place,
-                )
-            )
+            why = partings[stroke.segment].pop(0)
+            last = last_of[stroke.segment]
+            extra.append(ExtraLiftOff(last, stroke.segment, why.reason, why.text, why.place))
         times = rows.now + timed(stroke.joints, speeds, stroke.points, tool_speed)
         repeated += [
             RepeatedStretch(rows.count + a, rows.count + b, "beside another pass")
@@ -111,14 +102,14 @@ def assembled(
         rows.add(times, stroke.joints, stroke.points, stroke.normals, stroke.segment)
         rows.now = float(times[-1])
         last_of[stroke.segment] = rows.count - 1
-    segment, joints = np.concatenate(rows.segments), np.concatenate(rows.joints)
+    times, joints, points, normals, segment = map(np.concatenate, zip(*rows.parts, strict=True))
     return Trajectory(
         name=name,
         joint_names=robot.joint_names,
-        times=within_jerks(np.concatenate(rows.times), joints, speeds),
+        times=within_jerks(times, joints, speeds),
         joints=joints,
-        points=np.concatenate(rows.points),
-        normals=np.concatenate(rows.normals),
+        points=points,
+        normals=normals,
         contact=segment >= 0,
         segment=segment,
         unplanned=tuple(unplanned),
@@ -136,16 +127,6 @@ def _retraced(strokes: Sequence[Stroke], spacing: float) -> dict[int, Mask]:
         own = [number for number, stroke in enumerate(strokes) if stroke.segment == segment]
         marked = retraced([strokes[number].points for number in own], spacing)
         found.update(zip(own, marked, strict=True))
-    return found
-
-
-def _partings(strokes: Sequence[Stroke]) -> dict[int, list[Any]]:
-    """Why segments have more than one stroke, as often as they have more."""
-    found: dict[int, list[Any]] = {}
-    for stroke in strokes:
-        found.setdefault(stroke.segment, [])
-        if stroke.parting is not None:
-            found[stroke.segment].append(stroke.parting)
     return found
 
 

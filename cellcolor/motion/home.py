@@ -14,10 +14,8 @@ from cellcolor.motion.following import joint_space
 from cellcolor.motion.free_space import FreeSpace
 
 _TRIED = 256  # configurations at each distance
-_FIRST, _FARTHER = (
-    0.1,
-    1.3,
-)  # rad (or units of a slide), and the factor from one distance to the next
+_FIRST = 0.1  # rad, or units of a slide
+_FARTHER = 1.3  # the factor from one distance to the next
 _ROOMS = (0.1, 0.03, 0.0)  # m, more than the clearance, that a position that is found keeps
 _SHOWN = 3  # contacts
 _DIGITS = 2  # of a proposed position, rad or m

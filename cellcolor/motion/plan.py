@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -19,16 +19,14 @@ from cellcolor.motion.assembly import assembled
 from cellcolor.motion.following import joint_space
 from cellcolor.motion.limits import motion_of, speeds_of
 from cellcolor.motion.order import ordered
-from cellcolor.motion.refusing import ArmRefusals
-from cellcolor.motion.segment import Ground, SegmentStrokes, strokes_of
+from cellcolor.motion.segment import Ground, strokes_of
 from cellcolor.motion.small_triangles import SmallTriangles, corner_states
 from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.transfers import Transfers
 from cellcolor.motion.ways import Transfer
 from cellcolor.painting.paint import Painted
-from cellcolor.tool_paths.cover import Covered, check_spacing, cover
+from cellcolor.tool_paths.cover import check_spacing
 from cellcolor.tool_paths.measures import PathMeasures, in_all
-from cellcolor.tool_paths.overlap import Overlap
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN
 
 OnPaths = Callable[[ToolPaths, tuple[PathMeasures, ...]], None]
@@ -101,34 +99,12 @@ def plan_motion(
         small = SmallTriangles.of(surface.mesh, normals, segment_of)
         own_branch = np.array([branch_of[color] for color in color_of], dtype=np.int64)
         states = corner_states(prepared, small, own_branch, deadline)
-
-    def lay(
-        segment: int,
-        walls: Collection[tuple[int, int]],
-        refusals: ArmRefusals,
-        overlap: Overlap | None,
-    ) -> Covered:
-        return cover(
-            surface,
-            np.where(segment_of == segment, segment, -1),
-            color_of,
-            normals,
-            pattern=pattern,
-            spacing_m=motion.spacing_m,
-            tool_radius_m=motion.tool_radius_m,
-            walls=walls,
-            refusals=refusals,
-            overlap=overlap,
-            deadline=deadline,
-        )
-
     ground = Ground(
-        prepared, surface, segment_of, color_of, small, states, lay,
-        motion.spacing_m, motion.overlap_m, deadline,
-    )  # fmt: skip
+        prepared, surface, normals, segment_of, color_of, small, states, pattern, motion, deadline
+    )
     with clock.timed("tool paths"):
         covered = [
-            strokes_of(ground, segment, color_of[segment], int(own_branch[segment]))
+            strokes_of(ground, segment, int(own_branch[segment]))
             for segment in np.unique(segment_of[segment_of >= 0]).tolist()
         ]
     measures = [one for segment in covered for one in segment.courses.covered.measures]
@@ -143,7 +119,12 @@ def plan_motion(
     if on_paths is not None:
         on_paths(paths, tuple(measures))
     strokes = [stroke for segment in covered for stroke in segment.strokes]
-    left_out = _left_out(covered)
+    left_out = tuple(
+        LeftOut(place.segment, place.area_m2, place.cause, place.place)
+        for one in covered
+        for place in one.courses.covered.uncovered
+    )
+    left_out = tuple(sorted(left_out, key=lambda part: (-part.area_m2, part.segment, part.place)))
     if not strokes:
         raise InputError(None, None, _no_stroke(small, left_out, motion.spacing_m))
     with clock.timed("order of strokes"):
@@ -186,15 +167,12 @@ def _cut_off(
         main = 0
     else:
         main = int(np.bincount(group, [len(stroke) for stroke in strokes]).argmax())
-    return tuple(
-        sorted(
-            {
-                color_of[stroke.segment]
-                for stroke, own in zip(strokes, group.tolist(), strict=True)
-                if own != main
-            }
-        )
-    )
+    off = {
+        color_of[stroke.segment]
+        for stroke, own in zip(strokes, group.tolist(), strict=True)
+        if own != main
+    }
+    return tuple(sorted(off))
 
 
 def _colors(painted: Painted) -> list[int]:
@@ -204,16 +182,6 @@ def _colors(painted: Painted) -> list[int]:
         if segment >= 0 and color is not None:
             colors[segment] = color
     return colors
-
-
-def _left_out(covered: Sequence[SegmentStrokes]) -> tuple[LeftOut, ...]:
-    """What the tool does not go to: where a sample would fail, and what no path comes near to."""
-    parts = [
-        LeftOut(place.segment, place.area_m2, place.cause, place.place)
-        for one in covered
-        for place in one.courses.covered.uncovered
-    ]
-    return tuple(sorted(parts, key=lambda part: (-part.area_m2, part.segment, part.place)))
 
 
 def _no_stroke(small: SmallTriangles, left_out: Sequence[LeftOut], spacing_m: float) -> str:

@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cellcolor.arrays import Index, Mask
+from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.frontend.setup import Motion
 from cellcolor.motion.courses import Course, Courses, laid_out
 from cellcolor.motion.following import joint_space
 from cellcolor.motion.refusing import ArmRefusals
 from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
 from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
 from cellcolor.motion.windings import Walls, parts_of, walls_of
-from cellcolor.tool_paths.cover import Covered
+from cellcolor.tool_paths.cover import Covered, cover
 from cellcolor.tool_paths.overlap import Overlap
 
 _SHORT = 2.0  # spacings; no place of such a stroke is as large as a footprint
@@ -29,11 +30,6 @@ _ROUNDS = 3  # of paths laid out so that no joint leaves its limits
 _FEW = 0.01  # of the samples, that may be beyond the limits to be left out
 _AROUND = 0.2  # spacings; so far from a sample that fails no path is laid
 
-Walled = Collection[tuple[int, int]]
-Lay = Callable[[int, Walled, ArmRefusals, Overlap | None], Covered]
-"""The tool paths of a segment, given walls (mesh edges), where the arm cannot touch it, and how far
-they may go beyond its border."""
-
 
 @dataclass(frozen=True)
 class Ground:
@@ -42,25 +38,25 @@ class Ground:
     Attributes:
         prepared: the scene.
         surface: the painted surface.
+        normals: (n, 3) outward unit normals at its vertices.
         segment_of: (n,) the segment of each of its vertices, -1 without a color.
         colors: of each segment.
         small: its small triangles.
         states: what the arm does at their corners.
-        lay: see :data:`Lay`.
-        spacing: desired between passes, m; shorter pieces of a path are left out where it is cut.
-        overlap: of neighboring segments, m.
+        pattern: of the tool paths.
+        motion: of the setup.
         deadline: when to give up.
     """
 
     prepared: PreparedScene
     surface: LabelledSurface
+    normals: Array
     segment_of: Index
     colors: Sequence[int]
     small: SmallTriangles
     states: CornerStates
-    lay: Lay
-    spacing: float
-    overlap: float
+    pattern: str
+    motion: Motion
     deadline: Deadline
 
 
@@ -79,7 +75,7 @@ class SegmentStrokes:
     walls: Walls | None
 
 
-def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> SegmentStrokes:
+def strokes_of(ground: Ground, segment: int, branch: int) -> SegmentStrokes:
     """Lay out a segment's paths so that the arm can follow them, and follow them.
 
     They go beyond the segment's border if neighbors are to overlap and one stroke is enough then.
@@ -88,34 +84,58 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
     Args:
         ground: what they are made on.
         segment: its number.
-        color: its color.
-        branch: the color's.
+        branch: of its color.
 
     Raises:
         OutOfTime: the deadline came first.
     """
-    prepared, small, space = ground.prepared, ground.small, joint_space(ground.prepared)
+    prepared, surface, motion = ground.prepared, ground.surface, ground.motion
+    small, space = ground.small, joint_space(prepared)
     own = ground.segment_of == segment
-    if ground.overlap:
-        overlap = Overlap.of(
-            ground.surface, ground.segment_of, ground.colors, segment, ground.overlap
+
+    def refused_near(touched: Mask) -> ArmRefusals:
+        around = _AROUND * motion.spacing_m
+        return ArmRefusals(
+            prepared, branch, small, ground.states, segment, touched, around, ground.deadline
         )
-        touched = overlap.widened(ground.surface, own)
-        refusals = _refusals(ground, segment, branch, touched)
-        courses = _courses(ground, segment, branch, (), refusals, overlap)
+
+    def courses_with(
+        refusals: ArmRefusals,
+        walls: Collection[tuple[int, int]] = (),
+        overlap: Overlap | None = None,
+    ) -> Courses:
+        def lay() -> Covered:
+            return cover(
+                surface,
+                np.where(own, segment, -1),
+                ground.colors,
+                ground.normals,
+                pattern=ground.pattern,
+                spacing_m=motion.spacing_m,
+                tool_radius_m=motion.tool_radius_m,
+                walls=walls,
+                refusals=refusals,
+                overlap=overlap,
+                deadline=ground.deadline,
+            )
+
+        normals = small.normals[: len(surface.vertices)]
+        return laid_out(prepared, surface, normals, branch, lay, refusals, ground.deadline)
+
+    if motion.overlap_m:
+        overlap = Overlap.of(surface, ground.segment_of, ground.colors, segment, motion.overlap_m)
+        refusals = refused_near(overlap.widened(surface, own))
+        courses = courses_with(refusals, overlap=overlap)
         strokes = _on(ground, courses, branch)
         if len(strokes) == 1 and space.fits(strokes[0].joints):
             return SegmentStrokes(courses, strokes, None)
-    refusals = _refusals(ground, segment, branch, own)
-
-    def courses_with(walls: Walled) -> Courses:
-        return _courses(ground, segment, branch, walls, refusals, None)
-
-    courses = courses_with(())
+    refusals = refused_near(own)
+    courses = courses_with(refusals)
     strokes = _on(ground, courses, branch)
     if all(space.fits(stroke.joints) for stroke in strokes):
         return SegmentStrokes(courses, strokes, None)
-    cracks = [crack for crack in ground.surface.cracks if color in crack.colors]
+    color = ground.colors[segment]
+    cracks = [crack for crack in surface.cracks if color in crack.colors]
     closed = small.whole.marked([(crack.i, crack.j) for crack in cracks])
     parts = parts_of(small, ground.states, segment, closed)
     walls = walls_of(parts, small.whole, space, ground.deadline)
@@ -127,46 +147,19 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
     parted = len(strokes)
     name = prepared.robot.joint_names[walls.joint]
     for _ in range(_ROUNDS):
-        courses = courses_with(walls.edges)
+        courses = courses_with(refusals, walls.edges)
         strokes = _on(ground, courses, branch)
         if not _refuse_what_is_beyond(courses, strokes, space, refusals):
             break
     if not walls.whole:
-        strokes = [
-            replace(stroke, parting=_full(stroke, name)) if number >= parted else stroke
-            for number, stroke in enumerate(strokes)
-        ]
+        full = [replace(one, parting=_full(one, name)) for one in strokes[parted:]]
+        strokes = strokes[:parted] + full
     cut = [
         part
         for stroke in strokes
         for part in cut_where_full(stroke, space, prepared.robot.joint_names)
     ]
-    return SegmentStrokes(courses, _worth_a_lift_off(cut, ground.spacing), walls)
-
-
-def _refusals(ground: Ground, segment: int, branch: int, touched: Mask) -> ArmRefusals:
-    around = _AROUND * ground.spacing
-    prepared, small, states = ground.prepared, ground.small, ground.states
-    return ArmRefusals(prepared, branch, small, states, segment, touched, around, ground.deadline)
-
-
-def _courses(
-    ground: Ground,
-    segment: int,
-    branch: int,
-    walls: Walled,
-    refusals: ArmRefusals,
-    overlap: Overlap | None,
-) -> Courses:
-    return laid_out(
-        ground.prepared,
-        ground.surface,
-        ground.small.normals[: len(ground.surface.vertices)],
-        branch,
-        lambda: ground.lay(segment, walls, refusals, overlap),
-        refusals,
-        ground.deadline,
-    )
+    return SegmentStrokes(courses, _worth_a_lift_off(cut, motion.spacing_m), walls)
 
 
 def _refuse_what_is_beyond(
@@ -193,15 +186,14 @@ def _on(ground: Ground, courses: Courses, branch: int) -> list[Stroke]:
     """The strokes on all paths of a segment, what fails cut out of them."""
     found: list[Stroke] = []
     names, space = ground.prepared.judge.reason_names, joint_space(ground.prepared)
+    spacing = ground.motion.spacing_m
     for course in courses.courses:
         segment = course.path.segment
-        parts = trimmed(
-            segment, branch, course.samples, course.followed, ground.spacing, names, space
-        )
+        parts = trimmed(segment, branch, course.samples, course.followed, spacing, names, space)
         if parts and found:
             parts[0] = replace(parts[0], parting=_apart(course))
         found += parts
-    return _worth_a_lift_off(found, ground.spacing)
+    return _worth_a_lift_off(found, spacing)
 
 
 def _worth_a_lift_off(strokes: list[Stroke], spacing: float) -> list[Stroke]:

@@ -170,9 +170,7 @@ def cut_where_full(stroke: Stroke, space: JointSpace, joint_names: tuple[str, ..
             part = replace(part, parting=_full(stroke, parts[-1], first, space, joint_names))
         parts.append(part)
         first = fits
-        if (
-            len(part) < 2
-        ):  # not even one step fits, which the tests of the samples leave no room for
+        if len(part) < 2:  # not even one step fits, which the tests of samples leave no room for
             break
     return parts
 
