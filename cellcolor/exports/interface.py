@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index
 from cellcolor.data.surface import LabelledSurface
@@ -79,6 +80,12 @@ class PlannedMotion:
     axes: ArmAxes | None = None
     step_s: float | None = None
     force_n: float = 0.0
+
+    @property
+    def colors(self) -> NDArray[np.uint8]:
+        """(n, 4) red, green, blue and opacity of each vertex; light grey without a color."""
+        fills = [bytes.fromhex(fill[1:] + "FF") for fill in (*self.fills, "#DDDDDD")]
+        return np.array([list(fill) for fill in fills], dtype=np.uint8)[self.segment_of]
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,6 @@ from cellcolor.exports.interface import PlannedMotion
 from cellcolor.files.writing import FileKind
 
 _MARK = "cellcolor/painted-mesh"
-_BARE = "#DDDDDD"  # of vertices without a color, light grey as in the pictures
 
 # glTF has +y up; the world of a scene has +z up.
 _UP = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
@@ -50,14 +49,9 @@ def glb(planned: PlannedMotion) -> bytes:
 def _mesh(planned: PlannedMotion) -> Any:
     import trimesh
 
-    fills = np.array([_rgba(fill) for fill in (*planned.fills, _BARE)], dtype=np.uint8)
     return trimesh.Trimesh(
         planned.surface.vertices,
         planned.surface.faces,
-        vertex_colors=fills[planned.segment_of],  # -1 is the last one
+        vertex_colors=planned.colors,
         process=False,
     )
-
-
-def _rgba(fill: str) -> tuple[int, ...]:
-    return (*bytes.fromhex(fill.removeprefix("#")), 255)

@@ -210,15 +210,14 @@ def _frames(axes: ArmAxes, joints: Array) -> list[tuple[Array, Array]]:
 def _markers(planned: PlannedMotion) -> list[Field]:
     """The surface in the colors of its segments, and a line for each tool path."""
     surface = planned.surface
-    fills = np.array([_rgba(fill) for fill in (*planned.fills, "#DDDDDD")], dtype=np.float32)
     corners = surface.faces.ravel()
-    colors = fills[planned.segment_of[corners]]  # -1 is the last one
+    colors = (planned.colors[corners] / 255).astype(np.float32)
     paths = planned.paths.paths
     found: list[Field] = [np.uint32(1 + len(paths))]
     found += _marker("surface", 0, _TRIANGLES, 1.0, surface.vertices[corners], colors)
     for number, path in enumerate(paths):
         line = path.points + 0.0005 * path.normals
-        found += _marker("tool paths", number, _LINE_STRIP, 0.001, line, fills[:0])
+        found += _marker("tool paths", number, _LINE_STRIP, 0.001, line, colors[:0])
     return found
 
 
@@ -234,7 +233,3 @@ def _marker(
     texture: list[Field] = ["", never, "", "", _ZERO, _ZERO]  # none, nor places on it
     others: list[Field] = ["", "", _ZERO, "", _NO]  # neither text nor mesh
     return [never, _WORLD, space, what, *posed, shade, never, _NO, *drawn, *texture, *others]
-
-
-def _rgba(fill: str) -> list[float]:
-    return [*(byte / 255 for byte in bytes.fromhex(fill.removeprefix("#"))), 1.0]

@@ -20,8 +20,7 @@ from cellcolor.trajectory_checker.covered import (
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
-from cellcolor.trajectory_checker.repeated import Repeated, passes, repeated_stretches
-from cellcolor.trajectory_checker.strips import Strips
+from cellcolor.trajectory_checker.repeated import Repeated, Strips, passes, repeated_stretches
 from cellcolor.trajectory_checker.tolerances import Limits
 
 FAR, NEAR = 1.5, 0.75  # spacings; from a pass to what counts as covered, as closely covered
@@ -83,21 +82,12 @@ def judge_area(
         if tells
         else set(trajectory.segment[trajectory.contact].tolist())
     )
+    segment = trajectory.segment[dense.sample[rows]]
     right = excused(
-        built.prepared,
-        trajectory,
-        sorted(segments),
-        dense,
-        rows,
-        branches,
-        fine,
-        reached,
-        missed,
-        deadline,
+        built.prepared, sorted(segments), segment, branches, fine, reached, missed, deadline
     )
     near = reached.distance <= FAR * spacing
     uncovered = missed & ~right & ~near
-    segment = trajectory.segment[dense.sample[rows]]
     number = np.unique(segment, return_inverse=True)[1]
     by_segment = passes(dense, rows, number, located, fine, _VISIT * spacing)
     visits, strip = by_segment.sum(axis=1), np.full(len(rows), -1)
@@ -108,8 +98,8 @@ def judge_area(
     visited = (visits > 0) & (areas > 0)
     twice = repeated_stretches(dense, rows, located, strip, _ALONG * spacing, _APART * spacing)
     stated = np.zeros(len(rows), dtype=bool)
+    sample = dense.sample[rows]
     for stretch in trajectory.repeated:
-        sample = dense.sample[rows]
         stated |= (sample >= stretch.sample) & (sample <= stretch.last_sample)
 
     def share(of: Mask) -> float:

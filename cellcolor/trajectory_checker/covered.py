@@ -15,7 +15,6 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
 
 
@@ -81,10 +80,8 @@ def reach(fine: FineMesh, located: Located, farthest: float) -> Reached:
 
 def excused(
     prepared: PreparedScene,
-    trajectory: Trajectory,
     stated: list[int],
-    dense: Dense,
-    rows: Index,
+    segment: Index,
     branches: Index,
     fine: FineMesh,
     reached: Reached,
@@ -99,11 +96,10 @@ def excused(
 
     Args:
         stated: the segments of which the trajectory states to leave something out.
-        rows: (c,) those of ``dense`` in contact; ``branches`` (c,) of these.
+        segment: (c,) of each row in contact; ``branches`` (c,) of these.
         missed: (n,) the vertices to be asked about.
     """
     right = np.zeros(len(fine.vertices), dtype=bool)
-    segment = trajectory.segment[dense.sample[rows]]
     near = np.append(segment, -1)[reached.nearest]
     every = np.arange(len(prepared.kinematics.branches))
     regions = [(near == number, branches[segment == number]) for number in stated]

@@ -89,7 +89,8 @@ class FineMesh:
         normals = np.empty_like(self.vertices)
         given = self.surface.normals[self.surface.faces[self.face]]
         for corner in range(3):
-            normals[self.triangles[:, corner]] = _mixed(self.corners[:, corner], given)
+            mixed = np.einsum("kc,kcd->kd", self.corners[:, corner], given)
+            normals[self.triangles[:, corner]] = mixed
         return _unit(normals)
 
     @cached_property
@@ -156,7 +157,7 @@ class FineMesh:
         within = np.einsum("kc,kcd->kd", weights, self.corners[triangle])
         faces = self.face[triangle]
         given = self.surface.normals[self.surface.faces[faces]]
-        normals = _unit(_mixed(within, given))
+        normals = _unit(np.einsum("kc,kcd->kd", within, given))
         return Located(triangle, at, normals, self._owners(faces, within))
 
     def may_be_near(self, points: Array, distance: float) -> Mask:
@@ -267,9 +268,8 @@ def _closest_weights(points: Array, corners: Array) -> Array:
     """Barycentric coordinates (..., 3) of the nearest points of triangles (..., 3, 3)."""
     a, b, c = (corners[..., k, :] for k in range(3))
     ab, ac, ap = b - a, c - a, points - a
-    dot = _dot
-    d00, d01, d11 = dot(ab, ab), dot(ab, ac), dot(ac, ac)
-    d20, d21 = dot(ap, ab), dot(ap, ac)
+    d00, d01, d11 = _dot(ab, ab), _dot(ab, ac), _dot(ac, ac)
+    d20, d21 = _dot(ap, ab), _dot(ap, ac)
     scale = d00 * d11 - d01 * d01
     safe = np.where(scale > 0, scale, 1.0)
     v, w = (d11 * d20 - d01 * d21) / safe, (d00 * d21 - d01 * d20) / safe
@@ -279,12 +279,12 @@ def _closest_weights(points: Array, corners: Array) -> Array:
     best = np.full(outside.shape, np.inf)
     for first, second in ((0, 1), (1, 2), (2, 0)):
         start, along = corners[..., first, :], corners[..., second, :] - corners[..., first, :]
-        squared = dot(along, along)
-        way = dot(points - start, along) / np.where(squared > 0, squared, 1.0)
+        squared = _dot(along, along)
+        way = _dot(points - start, along) / np.where(squared > 0, squared, 1.0)
         way = np.clip(way, 0.0, 1.0)
         apart = points - start - way[..., None] * along
-        closer = outside & (dot(apart, apart) < best)
-        best = np.where(closer, dot(apart, apart), best)
+        closer = outside & (_dot(apart, apart) < best)
+        best = np.where(closer, _dot(apart, apart), best)
         on_edge = np.zeros_like(weights)
         on_edge[..., first], on_edge[..., second] = 1 - way, way
         weights = np.where(closer[..., None], on_edge, weights)
@@ -293,12 +293,6 @@ def _closest_weights(points: Array, corners: Array) -> Array:
 
 def _dot(one: Array, other: Array) -> Array:
     return np.asarray((one * other).sum(axis=-1))
-
-
-def _mixed(weights: Array, given: Array) -> Array:
-    """Weights (k, 3) of three vectors each (k, 3, 3): (k, 3)."""
-    mixed: Array = np.einsum("kc,kcd->kd", weights, given)
-    return mixed
 
 
 def _unit(vectors: Array) -> Array:

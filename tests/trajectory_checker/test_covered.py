@@ -16,8 +16,7 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.trajectory_checker.covered import patches, reach
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, refined
-from cellcolor.trajectory_checker.repeated import passes, repeated_stretches
-from cellcolor.trajectory_checker.strips import Strips
+from cellcolor.trajectory_checker.repeated import Strips, passes, repeated_stretches
 from examples import examples
 
 
