@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from cellcolor.motion.transfers import Transfers
 from cellcolor.motion.ways import Transfer
 from cellcolor.painting.paint import Painted
 from cellcolor.tool_paths.cover import check_spacing
-from cellcolor.tool_paths.measures import PathMeasures, in_all
+from cellcolor.tool_paths.measures import PathMeasures
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN
 
 OnPaths = Callable[[ToolPaths, tuple[PathMeasures, ...]], None]
@@ -40,21 +40,17 @@ class MotionPlan:
     Attributes:
         paths: the tool paths that the trajectory follows.
         measures: of each of these paths.
-        in_all: of all together.
         trajectory: the arm on them.
         walls: mesh edges that the paths do not cross so that joints stay inside their limits.
         cut_off: the colors of the strokes that no planned moves join to the home position, or
             to most of the other strokes without one.
-        seconds: wall time of each stage.
     """
 
     paths: ToolPaths
     measures: tuple[PathMeasures, ...]
-    in_all: PathMeasures
     trajectory: Trajectory
     walls: tuple[tuple[int, int], ...]
     cut_off: tuple[int, ...]
-    seconds: dict[str, float] = field(compare=False)
 
 
 def plan_motion(
@@ -148,11 +144,9 @@ def plan_motion(
     return MotionPlan(
         paths,
         tuple(measures),
-        in_all(measures, motion.spacing_m),
         trajectory,
         tuple(edge for segment in covered if segment.walls for edge in segment.walls.edges),
         _cut_off(strokes, transfers, color_of, planner.home is not None),
-        clock.seconds,
     )
 
 

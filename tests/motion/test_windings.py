@@ -22,6 +22,7 @@ from cellcolor.motion.small_triangles import SmallTriangles, corner_states
 from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.windings import Parts, PartSteps, parts_of, walls_of
 from cellcolor.tool_paths.cover import cover
+from cellcolor.tool_paths.measures import in_all
 
 pytestmark = pytest.mark.second
 
@@ -61,7 +62,7 @@ def test_the_chosen_path_stays_in_the_limits_without_a_lift_off(ring: Planned) -
     assert (trajectory.joints >= robot.lower).all()
     assert (trajectory.joints <= robot.upper).all()
     assert np.ptp(trajectory.joints[trajectory.contact][:, 0]) > 1.8 * np.pi  # nearly all round
-    assert ring.plan.in_all.covered_wide > 0.99
+    assert in_all(ring.plan.measures, ring.plan.paths.spacing_m).covered_wide > 0.99
 
 
 def test_cracks_of_the_color_open_the_ring_and_do_not_part_it(ring: Planned) -> None:
