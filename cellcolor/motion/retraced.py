@@ -35,26 +35,18 @@ def retraced(strokes: Sequence[Array], spacing: float) -> list[Mask]:
         ways.append((begin + np.concatenate([[0.0], np.cumsum(steps)]))[::every])
         thin.append(points[::every])
         begin += float(steps.sum()) + 2 * _APART * spacing  # another stroke is another pass
-    marked = _marked(thin, np.concatenate(ways), spacing)
-    parts = np.split(marked, np.cumsum([len(points) for points in thin])[:-1])
-    return [
-        np.repeat(part, every)[: len(points)] for part, points in zip(parts, strokes, strict=True)
-    ]
-
-
-def _marked(strokes: Sequence[Array], way: Array, spacing: float) -> Mask:
-    """The same for all points (k, 3) after one another, each with its way from the beginning, m."""
-    points = np.concatenate(strokes)
-    found = np.zeros(len(points), dtype=bool)
-    steps = np.concatenate([_steps(stroke) for stroke in strokes])
-    lengths = np.linalg.norm(steps, axis=1, keepdims=True)
-    directions = steps / np.where(lengths > 0, lengths, 1.0)
+    way, points = np.concatenate(ways), np.concatenate(thin)
+    steps = np.concatenate([_steps(own) for own in thin])
+    sizes = np.linalg.norm(steps, axis=1, keepdims=True)
+    directions = steps / np.where(sizes > 0, sizes, 1.0)
     near = cKDTree(points).query_pairs(_BESIDE * spacing, output_type="ndarray")
     one, other = near.T
     parallel = np.abs(np.einsum("ij,ij->i", directions[one], directions[other])) >= _ALONG
     passes = near[parallel & (np.abs(way[one] - way[other]) > _APART * spacing)]
-    found[passes.ravel()] = True
-    return found
+    marked = np.zeros(len(points), dtype=bool)
+    marked[passes.ravel()] = True
+    parts = np.split(marked, np.cumsum([len(own) for own in thin])[:-1])
+    return [np.repeat(part, every)[: len(own)] for part, own in zip(parts, strokes, strict=True)]
 
 
 def _steps(points: Array) -> Array:

@@ -271,12 +271,16 @@ class _Tree:
     turns: Index
 
 
-class _GainGraph:
-    """The parts and steps of a segment, for trees to be grown on."""
+class _Grower:
+    """Grows trees on the parts and steps of one segment.
 
-    def __init__(self, parts: Parts, period: Array) -> None:
-        """List for each part its neighbors: the part, distance of the vertices, turns there."""
-        self._parts, self._period = parts, period
+    Attributes:
+        joint: a joint that winds; if none does, the one that moves farthest.
+    """
+
+    def __init__(self, parts: Parts, space: JointSpace, deadline: Deadline) -> None:
+        self._parts, self._space, self._deadline = parts, space, deadline
+        # For each part its neighbors: the part, distance of the vertices, turns there.
         self._neighbors: list[list[tuple[int, float, Index]]] = [[] for _ in parts.places]
         here, there = parts.places[parts.steps.ends].swapaxes(0, 1)
         lengths = np.linalg.norm(here - there, axis=1).tolist()
@@ -284,8 +288,21 @@ class _GainGraph:
         for (one, other), length, turns in steps:
             self._neighbors[one].append((other, length, turns))
             self._neighbors[other].append((one, length, -turns))
+        everywhere = np.ones(len(parts.places), dtype=bool)
+        self._free = self._tree(0, np.zeros(len(space.period), dtype=np.int64), everywhere)
+        moved, reached = space.period * self._free.turns, self._free.reached
+        lowest = (parts.lowest + moved)[reached].min(axis=0)
+        highest = (parts.highest + moved)[reached].max(axis=0)
+        winds = np.asarray(self._disagreeing(self._free).any(axis=0))
+        self.joint = int(np.argmax(winds) if winds.any() else np.argmax(highest - lowest))
+        # For each joint the turns to add to the free tree; None if it winds or does not fit.
+        fitting = _fitting(lowest, highest, space.limits, space.period)
+        self._fixed: list[int | None] = [
+            None if wind or not turns else turns[0]
+            for wind, turns in zip(winds, fitting, strict=True)
+        ]
 
-    def tree(self, root: int, start: Index, allowed: Mask, limits: _Limits | None = None) -> _Tree:
+    def _tree(self, root: int, start: Index, allowed: Mask, limits: _Limits | None = None) -> _Tree:
         """The tree of shortest paths from a root, as far as allowed parts stay inside limits.
 
         Args:
@@ -313,49 +330,23 @@ class _GainGraph:
         return _Tree(reached, turns)
 
     def _inside(self, part: int, turns: Index, limits: _Limits) -> bool:
-        moved, (lower, upper) = self._period * turns, limits
+        moved, (lower, upper) = self._space.period * turns, limits
         inside = self._parts.lowest[part] + moved >= lower
         inside &= self._parts.highest[part] + moved <= upper
         return bool(inside.all())
 
-    def disagreeing(self, tree: _Tree) -> Mask:
+    def _disagreeing(self, tree: _Tree) -> Mask:
         """(s, joints) which steps between parts of a tree contradict its turns."""
         one, other = self._parts.steps.ends.T
         inside = tree.reached[one] & tree.reached[other]
         goes_on = tree.turns[one] + self._parts.steps.turns == tree.turns[other]
         return np.asarray(inside[:, None] & ~goes_on)
 
-    def cost(self, tree: _Tree) -> tuple[float, float]:
+    def _cost(self, tree: _Tree) -> tuple[float, float]:
         """The cost of a tree, compared in this order: minus its area, m^2; its walls' length, m."""
         area = round(float(self._parts.areas[tree.reached].sum()), 12)
-        walls = self._parts.steps.lengths[self.disagreeing(tree).any(axis=1)]
+        walls = self._parts.steps.lengths[self._disagreeing(tree).any(axis=1)]
         return -area, float(walls.sum())
-
-
-class _Grower:
-    """Grows trees of one segment inside the limits of the joints.
-
-    Attributes:
-        graph: what they are grown on.
-        joint: a joint that winds; if none does, the one that moves farthest.
-    """
-
-    def __init__(self, parts: Parts, space: JointSpace, deadline: Deadline) -> None:
-        self._parts, self._space, self._deadline = parts, space, deadline
-        self.graph = _GainGraph(parts, space.period)
-        everywhere = np.ones(len(parts.places), dtype=bool)
-        self._free = self.graph.tree(0, np.zeros(len(space.period), dtype=np.int64), everywhere)
-        moved, reached = space.period * self._free.turns, self._free.reached
-        lowest = (parts.lowest + moved)[reached].min(axis=0)
-        highest = (parts.highest + moved)[reached].max(axis=0)
-        winds = np.asarray(self.graph.disagreeing(self._free).any(axis=0))
-        self.joint = int(np.argmax(winds) if winds.any() else np.argmax(highest - lowest))
-        # For each joint the turns to add to the free tree; None if it winds or does not fit.
-        fitting = _fitting(lowest, highest, space.limits, space.period)
-        self._fixed: list[int | None] = [
-            None if wind or not turns else turns[0]
-            for wind, turns in zip(winds, fitting, strict=True)
-        ]
 
     def best(self, left: Mask) -> _Tree:
         """The tree with the largest area in what is left; among equals, with the shortest walls.
@@ -365,7 +356,7 @@ class _Grower:
         alone = np.zeros(len(left), dtype=bool)
         alone[int(np.argmax(left))] = True
         nothing = _Tree(alone, np.zeros_like(self._free.turns))
-        return min(self._trees(left), key=self.graph.cost, default=nothing)
+        return min(self._trees(left), key=self._cost, default=nothing)
 
     def _trees(self, left: Mask) -> Iterator[_Tree]:
         for root in _spread(self._parts.places, np.flatnonzero(left)):
@@ -374,7 +365,7 @@ class _Grower:
                 limits = self._space.lower + off, self._space.upper - off
                 for start in self._starts(root, limits):
                     self._deadline.check()
-                    yield self.graph.tree(root, start, left, limits)
+                    yield self._tree(root, start, left, limits)
 
     def _starts(self, root: int, limits: _Limits) -> list[Index]:
         """All choices of turns (joints,) that put a root inside the limits."""
