@@ -20,7 +20,7 @@ from cellcolor.data.cells_and_edges import (
     shared_colors,
 )
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.value import Document, Value
+from cellcolor.data.value import Document, Value, given_members
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
 from cellcolor.files.documents import dump_lines, sha256_of
@@ -90,6 +90,7 @@ class Instance(Document):
     surface: SurfaceReference | None = None
     known: KnownResults | None = None
     coverage: Coverage | None = None
+    _of_version_1: str | None = field(default=None, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         settle(self)
@@ -210,19 +211,18 @@ class Instance(Document):
 
     def _body(self) -> dict[str, Any]:
         """The JSON object without its format and version."""
-        document: dict[str, Any] = {"name": self.name, "colors": list(self.colors)}
-        document["cells"] = [_given(cell) for cell in self.cells]
-        document["edges"] = [_given(edge) for edge in self.edges]
+        document: dict[str, Any] = {"name": self.name, "colors": self.colors}
+        document["cells"] = [given_members(cell) for cell in self.cells]
+        document["edges"] = [given_members(edge) for edge in self.edges]
         if self.meta is not None:
             document["meta"] = self.meta
         if self.surface is not None:
-            document["surface"] = _given(self.surface)
+            document["surface"] = given_members(self.surface)
         if self.coverage is not None:
-            document["coverage"] = self.coverage.to_document()
+            document["coverage"] = given_members(self.coverage)
         if self.known is not None:
-            document["known"] = {
-                space: _given(result) for space, result in _given(self.known).items()
-            }
+            results = given_members(self.known)
+            document["known"] = {space: given_members(known) for space, known in results.items()}
         return document
 
     @cached_property
@@ -250,24 +250,19 @@ class Instance(Document):
             }
         )
 
-    @cached_property
+    @property
     def sha256_of_version_1(self) -> str:
         """Fingerprint of this instance in a solution of version 1: that of the whole file."""
-        return _fingerprint_of_version_1(self._body())
+        return self._of_version_1 or _fingerprint_of_version_1(self._body())
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Instance:
         instance = super().from_document(document)
         if document["version"] == 1:
             # The old fingerprint depends on the order of colors, which an instance does not keep.
-            instance.__dict__["sha256_of_version_1"] = _fingerprint_of_version_1(document)
+            found = _fingerprint_of_version_1(document)
+            object.__setattr__(instance, "_of_version_1", found)
         return instance
-
-
-def _given(value: Any) -> dict[str, Any]:
-    """The members of a dataclass with slots that are not None, in their order."""
-    members = [(name, getattr(value, name)) for name in value.__slots__]
-    return {name: content for name, content in members if content is not None}
 
 
 def _fingerprint_of_version_1(body: dict[str, Any]) -> str:

@@ -84,6 +84,12 @@ adapter_of: Callable[[Any], TypeAdapter[Any]] = cache(TypeAdapter)
 """What reads the JSON object of a dataclass."""
 
 
+def given_members(value: Any) -> dict[str, Any]:
+    """The members of a dataclass that are not None, by name, in their order."""
+    members = {field.name: getattr(value, field.name) for field in fields(value)}
+    return {name: content for name, content in members.items() if content is not None}
+
+
 class WithArrays:
     """A dataclass with arrays; ``==`` of two arrays is neither true nor false by itself."""
 
