@@ -131,7 +131,7 @@ class LabelledSurface(WithArrays, Document):
         return type(self), tuple(getattr(self, member.name) for member in fields(self))
 
     def __str__(self) -> str:
-        unreachable = sum(not colors for colors in self.vertex_colors) - len(self.given_up)
+        unreachable = int((~self.colored).sum()) - len(self.given_up)
         parts = [
             count(len(self.vertices), "vertex", "vertices"),
             count(len(self.faces), "triangle"),
@@ -203,6 +203,11 @@ class LabelledSurface(WithArrays, Document):
         return self.mesh.vertex_areas
 
     @property
+    def colored(self) -> Mask:
+        """The vertices (n,) that have a color."""
+        return np.array([bool(own) for own in self.vertex_colors], dtype=bool)
+
+    @property
     def vertex_normals(self) -> NDArray[np.float64]:
         """Outward unit normals (n, 3) of the mesh: of the triangles around, weighed by area.
 
@@ -221,7 +226,7 @@ class LabelledSurface(WithArrays, Document):
         if not 0 < total < np.inf:
             return None
         given_up = list(self.given_up)
-        unreachable = np.array([not colors for colors in self.vertex_colors])
+        unreachable = ~self.colored
         unreachable[given_up] = False
         shares = (float(areas[own].sum()) / total for own in (unreachable, given_up))
         first, second = (round(min(share, 1.0), 12) for share in shares)

@@ -89,32 +89,28 @@ def check(
         InputError: one of the two cannot be used.
         OutOfTime: the time limit came before there was a verdict on a trajectory.
     """
-    if isinstance(solution, (str, PathLike)):
-        solution = find_claim(solution)
-    if isinstance(solution, Path) and format_of_claim(solution) == Trajectory.FORMAT:
-        deadline = Deadline.of(time_limit)
-        read = read_trajectory(solution)
-        subject = without_place(open_subject(instance, deadline), left_alone)
-        return judge_trajectory(subject, read, deadline)
-    if isinstance(solution, Trajectory):
+    claim: Any = find_claim(solution) if isinstance(solution, (str, PathLike)) else solution
+    if isinstance(claim, Path) and format_of_claim(claim) == Trajectory.FORMAT:
+        claim = read_trajectory(claim)
+    if isinstance(claim, (Trajectory, TrajectoryTable)):
         deadline = Deadline.of(time_limit)
         subject = without_place(open_subject(instance, deadline), left_alone)
-        return judge_trajectory(subject, solution, deadline)
+        return judge_trajectory(subject, claim, deadline)
     subject = without_place(open_subject(instance), left_alone)
     subject.check_graph()
     graph = subject.graph()
-    if isinstance(solution, Result):
-        solution = solution.solution
-    if not isinstance(solution, Solution):
-        solution = Solution.read(solution)
+    if isinstance(claim, Result):
+        claim = claim.solution
+    if not isinstance(claim, Solution):
+        claim = Solution.read(claim)
     regions = None
     if subject.given_surface is not None:
         cells = subject.decomposition.vertex_cell
         regions = regions_on_surface(subject.given_surface, cells)
-    report = check_solution(graph, solution, regions)
+    report = check_solution(graph, claim, regions)
     if not report.valid:
         return report
-    return replace(report, problems=tuple(contradictions(graph, solution)))
+    return replace(report, problems=tuple(contradictions(graph, claim)))
 
 
 def judge_trajectory(

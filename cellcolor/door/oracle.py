@@ -6,7 +6,7 @@ Test suites and ``cellcolor check`` use an oracle that keeps its proofs on disk.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -250,17 +250,8 @@ class Oracle:
         if found.problems:
             return PathVerdict(found.problems, None, self._known, found.violations, **about)
         of_colors = self._of_colors(coloring.plan, deadline)
-        return PathVerdict(
-            (),
-            of_colors.segments,
-            of_colors.bounds,
-            improvement=of_colors.improvement,
-            late=of_colors.late,
-            kept_lower=of_colors.kept_lower,
-            why=of_colors.why,
-            runs=coloring.runs,
-            **about,
-        )
+        own = {member.name: getattr(of_colors, member.name) for member in fields(Verdict)}
+        return PathVerdict(**own | about, runs=coloring.runs)
 
     def __repr__(self) -> str:
         proved = "" if self._proof is None else f", {self._proof.bounds}"

@@ -196,7 +196,7 @@ class _Asked:
         self.regions: list[_Region] = []
         for number, surface in enumerate(surfaces):
             self.regions += _regions_of(number, surface, options.deadline)
-        self._reach = np.array([[bool(own) for own in one.vertex_colors] for one in surfaces])
+        self._reach = np.array([one.colored for one in surfaces])
         reached = self._reach.any(axis=0)
         self.whole = float(self.areas[reached].sum())
         if not self.whole:
@@ -309,7 +309,7 @@ class _Asked:
             solution = checked.solve(instance, options)
         if solution.segments is None:
             return None, least
-        covered = float(self.areas[[bool(own) for own in surface.vertex_colors]].sum())
+        covered = float(self.areas[surface.colored].sum())
         colors = {sub.color for cell in solution.cells or () for sub in cell.subcells}
         used = sorted({int(surface.colors[color].partition(":")[0]) - 1 for color in colors})
         return Choice(tuple(used), surface, solution, covered / self.whole), least

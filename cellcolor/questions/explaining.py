@@ -227,8 +227,7 @@ class _Asked:
         deadline = self._options.deadline
         instance = decomposition_of(surface, deadline=deadline).instance
         areas = surface.vertex_areas
-        has_color = np.array([bool(own) for own in surface.vertex_colors])
-        covered = float(areas[has_color].sum())
+        covered = float(areas[surface.colored].sum())
         reached = ~np.isnan(finest.stages.candidates.configurations[:, :, 0]).all(axis=1)
         shares = covered / max(float(areas[reached].sum()), covered, 1e-12), covered / areas.sum()
         found: tuple[int | None, int, bool, str] = None, 0, True, "nothing is reached"

@@ -249,7 +249,7 @@ def _minimum(prepared: PreparedScene, pose: Pose, options: Options) -> PlacedMin
     surface, _ = labelled(*with_finer_borders(prepared, clock), {})
     instance = decomposition_of(surface, deadline=options.deadline).instance
     areas = surface.vertex_areas
-    share = float(areas[[bool(own) for own in surface.vertex_colors]].sum() / areas.sum())
+    share = float(areas[surface.colored].sum() / areas.sum())
     count = len(surface.vertices)
     if instance.nothing_to_cover:
         return PlacedMinimum(pose, None, 0.0, False, count, "nothing is reached")

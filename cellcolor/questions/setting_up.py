@@ -157,7 +157,7 @@ def plan_of(
     reached = np.zeros(len(areas), dtype=bool)
     shares = []
     for surface in candidates.surfaces:
-        own = np.array([bool(colors) for colors in surface.vertex_colors])
+        own = surface.colored
         reached |= own
         shares.append(float(areas[own].sum()))
     whole = float(areas[reached].sum())
