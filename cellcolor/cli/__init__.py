@@ -9,6 +9,7 @@ from __future__ import annotations
 import atexit
 import gc
 import os
+import signal
 import sys
 
 from cellcolor.cli.ending import INTERRUPTS, Exit
@@ -30,7 +31,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0 done, 1 found invalid, 2 bad usage or input, 3 stopped or not proved.
     """
     if arguments is None:
-        atexit.register(INTERRUPTS.ignore)  # registered first, so it is called last
+        # What Python does last would lose the exit code. Registered first, so it is called last.
+        atexit.register(INTERRUPTS.handle_with, signal.SIG_IGN)
         # What a command reads stays in use until it ends, so collecting garbage frees nothing. Done
         # every 700 objects, Python's default, it takes a third of the time of reading and checking.
         gc.set_threshold(50_000)

@@ -112,16 +112,16 @@ def bench() -> None:
 @output_option(
     "TABLE.csv", "A row for each run. An existing table is continued: its runs are not repeated."
 )
-def run(output: Path | None, **given: Any) -> Exit:
+def run(**given: Any) -> Exit:
     """Run solvers on instances, each solve in a process of its own.
 
     FAMILY is a set of random families (small, medium, large, growing), the library of shipped
     graphs (library) or one family, such as medium/thin; * stands for anything. Solvers that are
     not installed are left out. Exit code 1 if two runs contradict each other.
     """
-    from cellcolor.cli.bench_run import Request, run_solvers
+    from cellcolor.cli.bench_run import run_solvers
 
-    return run_solvers(Request(**given), output)
+    return run_solvers(**given)
 
 
 @bench.command()

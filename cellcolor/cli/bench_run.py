@@ -6,10 +6,10 @@ import shlex
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from rich import box
 from rich.table import Table
@@ -19,7 +19,6 @@ from cellcolor.cli.inputs import read_instance
 from cellcolor.cli.progress import progress_bar, workers_for
 from cellcolor.cli.tables import console
 from cellcolor.cli.terminal import complain, shown
-from cellcolor.data.solution import SearchSpace
 from cellcolor.data.wording import count
 from cellcolor.door.shipped import find_file, library
 from cellcolor.errors import CellcolorError, InputError, SolverMissing
@@ -44,42 +43,30 @@ _SHOWN = 60
 """Instances that are listed at the end; more are for ``bench summary``."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Request:
-    """What the command was asked for; the fields are its arguments and options."""
+def run_solvers(
+    subjects: Sequence[str],
+    solvers: Sequence[str],
+    seeds: Sequence[int],
+    jobs: int,
+    cluster: str | None,
+    output: Path | None,
+    **wanted: Any,
+) -> Exit:
+    """Make the runs, keep each of them at once, and print what came of them.
 
-    subjects: tuple[str, ...]
-    solvers: tuple[str, ...]
-    seeds: tuple[int, ...]
-    limits: tuple[float, ...]
-    repetitions: int
-    search_space: SearchSpace
-    megabytes: int
-    jobs: int
-    cluster: str | None
-
-
-def run_solvers(request: Request, output: Path | None) -> Exit:
-    """Make the runs, keep each of them at once, and print what came of them."""
-    subjects = list(
-        taking_turns([list(_subjects(text, request.seeds)) for text in request.subjects])
-    )
-    contestants = list(_contestants(request.solvers))
+    Args:
+        wanted: what else :class:`~cellcolor.lab.runs.sweep.Experiment` has of the options.
+    """
+    specimens = list(taking_turns([list(_subjects(text, seeds)) for text in subjects]))
+    contestants = list(_contestants(solvers))
     if not contestants:
         return Exit.BAD_INPUT
-    plan = Experiment(
-        subjects=subjects,
-        contestants=contestants,
-        limits=request.limits,
-        repetitions=request.repetitions,
-        search_space=request.search_space,
-        megabytes=request.megabytes,
-        command=command_line(),
-    )
+    plan = Experiment(subjects=specimens, contestants=contestants, command=command_line(), **wanted)
     table: AbstractContextManager[TableFile[Row] | None] = (
         nullcontext() if output is None else TableFile(output, Row)
     )
     bad: list[Specimen] = []
+    interrupted = False
 
     def tell(subject: Specimen, error: CellcolorError) -> None:
         named = isinstance(error, InputError) and error.file
@@ -90,7 +77,17 @@ def run_solvers(request: Request, output: Path | None) -> Exit:
         sweep = Sweep(plan, {row.key for row in file.rows} if file else (), tell)
         before = list(file.rows) if file else []
         made: list[Row] = []
-        interrupted = _make(sweep, plan, request, file, made)
+        total = len(plan.subjects) * plan.runs_of_each
+        try:
+            with workers_for(jobs, cluster) as workers, progress_bar(total) as advance:
+                for row in sweep.run(workers):
+                    made.append(row)
+                    if file is not None:
+                        file.append(row)
+                    advance(len(made) + sweep.skipped, f"{shown(row.subject)}: {row.contestant}")
+        except KeyboardInterrupt:
+            interrupted = True
+            complain("interrupted")
     wrong = disagreements([*before, *made])
     _print(made, sweep, wrong)
     if bad:
@@ -103,27 +100,6 @@ def run_solvers(request: Request, output: Path | None) -> Exit:
 def command_line() -> str:
     """What was typed, for the record."""
     return shlex.join(["cellcolor", *sys.argv[1:]])
-
-
-def _make(
-    sweep: Sweep, plan: Experiment, request: Request, file: TableFile[Row] | None, made: list[Row]
-) -> bool:
-    """Make the runs; returns whether they were interrupted."""
-    total = len(plan.subjects) * plan.runs_of_each
-    try:
-        with (
-            workers_for(request.jobs, request.cluster) as workers,
-            progress_bar(total) as advance,
-        ):
-            for row in sweep.run(workers):
-                made.append(row)
-                if file is not None:
-                    file.append(row)
-                advance(len(made) + sweep.skipped, f"{shown(row.subject)}: {row.contestant}")
-    except KeyboardInterrupt:
-        complain("interrupted")
-        return True
-    return False
 
 
 def _subjects(text: str, seeds: Sequence[int]) -> Iterator[Specimen]:

@@ -93,17 +93,11 @@ class Interrupts:
         finally:
             sys.unraisablehook = report
 
-    def handle_with(self, handler: Handler) -> None:
+    def handle_with(self, handler: Handler | signal.Handlers) -> None:
         """Replace the signals' handlers for good."""
         if threading.current_thread() is threading.main_thread():
             for number in _SIGNALS:
                 signal.signal(number, handler)
-
-    def ignore(self) -> None:
-        """Leave the signals alone: what Python does last would lose the exit code."""
-        if threading.current_thread() is threading.main_thread():
-            for number in _SIGNALS:
-                signal.signal(number, signal.SIG_IGN)
 
     def check(self) -> None:
         """Raise what a library has swallowed: some catch everything, when imported above all.

@@ -64,10 +64,7 @@ def build(source: Path, output: Path) -> Exit:
         raise InputError(str(output), None, message)
     with apart_from(output):
         instance = (_build_scene if is_scene(source) else _build_surface)(source, output)
-        say(
-            f"wrote {output}: {count(len(instance.cells), 'cell')}, "
-            f"{count(len(instance.edges), 'edge')}, {count(len(instance.colors), 'color')}"
-        )
+        say(f"wrote {output}: {instance.size}")
     if instance.nothing_to_cover:
         complain(f"{source}: {nothing_to_cover(instance)}")
         return Exit.STOPPED

@@ -29,7 +29,7 @@ from cellcolor.cli.progress import at_work, stages_of
 from cellcolor.cli.terminal import complain, say, say_lines
 from cellcolor.data.wording import count, listed, segments_and_lift_offs
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.writing import Output, check_output, is_stream, kind_of_format, write
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, PATTERNS, pattern_names
 
@@ -86,16 +86,17 @@ def paint(
     if tool_radius is not None and not 0 < tool_radius < math.inf:
         raise InputError(None, "--tool-radius", "must be a positive number of meters")
     try:
-        subject = read_subject(source, time_limit)
-        if subject.surface_path is not None:  # of an instance: what it names is read as well
-            inputs.append(subject.surface_path)
-        check_painted(output, inputs)
-        painted = painted_of(subject, solution, tool_radius_m=tool_radius, time_limit=time_limit)
+        with naming(claim):
+            subject = read_subject(source, time_limit)
+            if subject.surface_path is not None:  # of an instance: what it names is read as well
+                inputs.append(subject.surface_path)
+            check_painted(output, inputs)
+            painted = painted_of(
+                subject, solution, tool_radius_m=tool_radius, time_limit=time_limit
+            )
     except OutOfTime as error:
         message = f"{source}: not painted: the time limit came first; nothing is written"
         raise OutOfTime(message) from error
-    except InputError as error:
-        raise error if error.file else error.in_file(str(claim)) from error
     write_painted(painted, output, inputs)
     added = len(painted.surface.vertices) - len(subject.surface.vertices)
     refined = f", {count(added, 'vertex', 'vertices')} added" if added else ""
@@ -108,7 +109,6 @@ def paint(
 
 def _about(painted: Painted) -> Iterator[str]:
     """Borders of a painting, what a scene refused of it, and segments that are one on the mesh."""
-
     if painted.borders is not None and painted.segments > 1:
         yield from _borders(painted.borders)
     if len(painted.minima) > 1:
@@ -123,7 +123,6 @@ def _about(painted: Painted) -> Iterator[str]:
 
 
 def _borders(report: BorderReport) -> Iterator[str]:
-
     before, after = report.before, report.after
     yield f"borders: {after.length_m:.4g} m, {before.length_m:.4g} m as first drawn"
     if after.narrowest is not None:
@@ -292,7 +291,6 @@ def plan(
 
 def _unfinished(scene: Path, folder: Path, unfinished: UnfinishedPlan) -> Exit:
     """Write what there is when the time limit came, and say what is missing."""
-
     _warn(scene, unfinished.subject)
     complain(f"{scene}: not planned to the end: {unfinished.missing}")
     try:
@@ -306,6 +304,5 @@ def _unfinished(scene: Path, folder: Path, unfinished: UnfinishedPlan) -> Exit:
 
 
 def _warn(scene: Path, subject: Subject) -> None:
-
     for warning in subject.warnings:
         complain(f"{scene}: warning: {warning}")

@@ -11,7 +11,7 @@ from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import INPUT, PATH, cellcolor, json_option, output_option
 from cellcolor.cli.terminal import apart_from, print_json, say
 from cellcolor.data.wording import count, listed
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.writing import Output, check_output, kind_of_format, write
 
 if TYPE_CHECKING:
@@ -52,10 +52,8 @@ def export(source: Path, output: Path, kind: str | None) -> Exit:
     check_output(output, form.kind, [source])
     with apart_from(output):
         instance = read_instance(source)
-        try:
+        with naming(source):
             lines = form.write(instance)
-        except InputError as error:
-            raise error.in_file(str(source)) from error
         content = (f"{line}\n".encode() for line in lines)
         write([Output(output, form.kind, content)], [source])
         say(f"wrote {output}, for {form.about}")
@@ -89,10 +87,8 @@ def answer(source: Path, given: Path, kind: str, output: Path) -> Exit:
     check_output(output, kind_of_format(Solution.FORMAT), inputs)
     with apart_from(output):
         instance = read_instance(source)
-        try:
+        with naming(given):
             solution = _checked(instance, read_answer(instance, read_text(given), kind), kind)
-        except InputError as error:
-            raise error.in_file(str(given)) from error
         write([Output.of(output, solution)], inputs)
         say(f"wrote {output}: {count(solution.segments or 0, 'segment')}")
         for note in solution.notes:
@@ -145,7 +141,7 @@ def import_(source: Path, output: Path, corrections: tuple[str, ...]) -> Exit:
     instance = read_imcgs(source, corrections, output.name.removesuffix(".json"))
     write([Output.of(output, instance)], [source])
     with apart_from(output):
-        say(f"wrote {output}: {str(instance).partition(': ')[2]}")
+        say(f"wrote {output}: {instance.size}")
         for entry in library().index.entries:
             if entry.fingerprint == instance.sha256:
                 say(f"This is {entry.name} of the library: {entry.paper} segments.")

@@ -12,7 +12,7 @@ from cellcolor.cli.ending import INTERRUPTS
 from cellcolor.cli.terminal import shown
 from cellcolor.data.wording import count
 from cellcolor.deadline import OutOfTime
-from cellcolor.errors import InputError
+from cellcolor.errors import naming
 
 if TYPE_CHECKING:
     from cellcolor.lab.workers import Workers
@@ -76,12 +76,10 @@ def at_work(file: Path, work: str, late: str) -> Iterator[Callable[[str], None]]
         InputError: with a file.
     """
     try:
-        with stages_of(file, work) as report:
+        with naming(file), stages_of(file, work) as report:
             yield report
     except OutOfTime as error:
         raise OutOfTime(f"{file}: {late}") from error
-    except InputError as error:
-        raise error if error.file else error.in_file(str(file)) from error
 
 
 @contextmanager

@@ -43,11 +43,7 @@ def print_solution(instance: Instance, solution: Solution) -> None:
         solution: a valid solution of it.
     """
     out = console()
-    out.print(
-        Text(shown(instance.name), style="bold"),
-        f"{count(len(instance.cells), 'cell')}, {count(len(instance.edges), 'edge')}, "
-        f"{count(len(instance.colors), 'color')}",
-    )
+    out.print(Text(shown(instance.name), style="bold"), instance.size)
     if solution.cells:
         shares = shares_of(instance, solution)
         out.print(_segments(instance, solution, shares))

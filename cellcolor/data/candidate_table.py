@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.value import WithArrays
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.writing import SIDE_MARKER
 
 VALID = 0
@@ -106,10 +106,8 @@ class CandidateTable(WithArrays):
             raise InputError(str(path), "meta.side_file", message)
         side = path.parent / name
         table = cls.read(side)
-        try:
+        with naming(side):
             table.check(surface)
-        except InputError as error:
-            raise error.in_file(str(side)) from error
         return table
 
     def check(self, surface: LabelledSurface) -> None:

@@ -15,7 +15,7 @@ from os import PathLike
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.wording import count, listed
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import read_text
 from cellcolor.files.paths import path_of
 
@@ -73,10 +73,8 @@ def read_imcgs(
     """
     corrected = dict(map(parse_correction, corrections))
     text = read_text(path)
-    try:
+    with naming(path):
         cells, edges, colors = _parsed(text, corrected)
-    except InputError as error:
-        raise error.in_file(str(path)) from error
     meta = {"made_by": f"cellcolor import {path_of(path).name}"}
     if corrections:
         meta["made_by"] += "".join(f" --correct {correction}" for correction in corrections)
@@ -115,11 +113,7 @@ def _parsed(
     edges = tuple(
         Edge(edge + 1, holders[edge][0], (*holders[edge], OUTSIDE)[1]) for edge in range(edge_count)
     )
-    return (
-        _cells(loops, colors, names),
-        edges,
-        tuple(f"c{name}" for name in names),
-    )
+    return _cells(loops, colors, names), edges, tuple(f"c{name}" for name in names)
 
 
 def _lines(text: str) -> Iterable[_Line]:

@@ -105,11 +105,14 @@ class Instance(Document):
                         None, f"surface.vertex_cell[{vertex}]", f"no cell {cell} in this instance"
                     )
 
+    @property
+    def size(self) -> str:
+        """``2 cells, 5 edges, 3 colors``."""
+        cells, edges = count(len(self.cells), "cell"), count(len(self.edges), "edge")
+        return f"{cells}, {edges}, {count(len(self.colors), 'color')}"
+
     def __str__(self) -> str:
-        return (
-            f"{self.name}: {count(len(self.cells), 'cell')}, {count(len(self.edges), 'edge')}, "
-            f"{count(len(self.colors), 'color')}"
-        )
+        return f"{self.name}: {self.size}"
 
     @cached_property
     def _edge_by_id(self) -> dict[int, Edge]:

@@ -19,7 +19,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.objective import Objective
 from cellcolor.data.value import Document, Value, adapter_of, given_members
 from cellcolor.data.wording import count, listed
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import (
     dump_lines,
     parse_first_object,
@@ -369,10 +369,8 @@ class Solution(Document):
             InputError: the file cannot be read or holds something that the format forbids.
         """
         text = read_text(path)
-        try:
+        with naming(path):
             return cls.from_document(parse_first_object(text))
-        except InputError as error:
-            raise error.in_file(str(path)) from error
 
 
 def witness_in_words(instance: Instance, cells: tuple[int, ...]) -> str | None:

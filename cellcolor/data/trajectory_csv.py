@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import read_text
 
 _POSE = ("x", "y", "z", "nx", "ny", "nz")
@@ -61,10 +61,8 @@ def read_trajectory_csv(path: str | PathLike[str]) -> TrajectoryTable:
         InputError: unreadable, no such table, or a cell that is not what its column says; names
             file, line and column.
     """
-    try:
+    with naming(path):
         return _parsed(Path(path).stem, read_text(path))
-    except InputError as error:
-        raise error if error.file else error.in_file(str(path)) from error
 
 
 def _parsed(name: str, text: str) -> TrajectoryTable:

@@ -34,9 +34,9 @@ def span(least: int, most: int | None) -> str:
     return str(least) if least == most else f"{least} to {most}"
 
 
-def in_meters(lengths: Iterable[float], between: str = ", ") -> str:
+def in_meters(lengths: Iterable[float]) -> str:
     """``0.4 x 0.4 x 0.12 m``: lengths in three digits."""
-    return f"{between.join(f'{length:.3g}' for length in lengths)} m"
+    return f"{' x '.join(f'{length:.3g}' for length in lengths)} m"
 
 
 def looks_like_millimeters(*lengths: float) -> str:

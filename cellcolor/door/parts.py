@@ -12,7 +12,7 @@ import numpy as np
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.drawing import Drawing
 from cellcolor.door.extras import extras_for
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.paths import path_of
 
 if TYPE_CHECKING:
@@ -44,14 +44,11 @@ def inspect(
     """
     deadline, tell = Deadline.of(time_limit), progress or _nobody
     name, file = _name(part)
-    with extras_for(name):
+    with naming(file), extras_for(name):
         from cellcolor.frontend.parts.inspection import inspect_mesh
 
         vertices, faces = _mesh(part, deadline, tell)
-        try:
-            return inspect_mesh(name, vertices, faces, unit, deadline, tell)
-        except InputError as error:
-            raise _named(error, file) from error
+        return inspect_mesh(name, vertices, faces, unit, deadline, tell)
 
 
 def repair(
@@ -82,20 +79,17 @@ def repair(
     """
     deadline, tell = Deadline.of(time_limit), progress or _nobody
     name, file = _name(part)
-    with extras_for(name):
+    with naming(file), extras_for(name):
         from cellcolor.frontend.parts.mesh_file import UNITS
         from cellcolor.frontend.parts.repaired import repair_mesh
         from cellcolor.frontend.parts.repairing import LEAST_SHARE
 
         vertices, faces = _mesh(part, deadline, tell)
-        try:
-            scale = UNITS[_unit(vertices, unit)]
-            share = LEAST_SHARE if least_component is None else least_component
-            return repair_mesh(
-                vertices, faces, scale, fill_holes_m, share, edge_length_m, deadline, tell
-            )
-        except InputError as error:
-            raise _named(error, file) from error
+        scale = UNITS[_unit(vertices, unit)]
+        share = LEAST_SHARE if least_component is None else least_component
+        return repair_mesh(
+            vertices, faces, scale, fill_holes_m, share, edge_length_m, deadline, tell
+        )
 
 
 def draw_inspection(inspection: Inspection) -> Drawing:
@@ -147,7 +141,3 @@ def _unit(vertices: Any, unit: str | None) -> str:
     if likely is None:
         raise InputError(None, "unit", reason)
     return likely
-
-
-def _named(error: InputError, file: str | None) -> InputError:
-    return error if error.file or file is None else error.in_file(file)

@@ -21,7 +21,7 @@ from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.extras import require_motion
 from cellcolor.door.parts import inspect
 from cellcolor.door.starting_texts import MARK, SCENE, SETUP, TOOL
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.paths import path_of
 from cellcolor.files.writing import FileKind, Output, check_output, is_folder_or_nothing, write
 
@@ -300,10 +300,8 @@ def best_place(
     table = tomllib.loads(Template(SCENE).substitute(part_keys, position="[0.0, 0.0, 0.0]"))
     table["object"]["file"] = str(mesh.resolve())
     scene = Scene(**table | {"setup": arm.setup})
-    try:
+    with naming(mesh):
         vertices = scene.object.surface(scene.folder, deadline).vertices
-    except InputError as error:
-        raise error if error.file else error.in_file(str(mesh)) from error
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     middle = (low + high) / 2
     best: tuple[PreparedScene, float] | None = None

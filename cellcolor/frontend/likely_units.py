@@ -124,4 +124,4 @@ def notes_on_units(scene: Scene, reach: float) -> tuple[str, ...]:
 
 def size_of(part: Surface) -> str:
     """The part's extents along the axes of the world, ``0.4 x 0.4 x 0.12 m``."""
-    return in_meters(np.ptp(part.vertices, axis=0).tolist(), " x ")
+    return in_meters(np.ptp(part.vertices, axis=0).tolist())

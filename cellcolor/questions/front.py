@@ -101,7 +101,7 @@ class FrontChoice:
     cost_cm2: float | None = None
 
     def __str__(self) -> str:
-        text = f"{count(self.point.lift_offs, 'lift-off')}: {100 * self.point.covered_share:.1f} %"
+        text = self.point.in_short
         if self.cost_cm2 is not None:
             text += f", costs {self.cost_cm2:.4g} cm²"
         if self.proved_for_surface:

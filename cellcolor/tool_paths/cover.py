@@ -196,7 +196,7 @@ def _check_lengths(surface: LabelledSurface, spacing_m: float, tool_radius_m: fl
     size = np.ptp(surface.vertices, axis=0)
     if tool_radius_m > float(np.linalg.norm(size)):
         message = (
-            f"larger than the part ({in_meters(size.tolist(), ' x ')}): "
+            f"larger than the part ({in_meters(size.tolist())}): "
             f"{looks_like_millimeters(tool_radius_m)}"
         )
         raise InputError(None, "tool_radius_m", message)
@@ -226,7 +226,7 @@ def check_spacing(surface: LabelledSurface, segment_of: Index, spacing_m: float)
     largest = max(sizes, key=lambda size: float(np.linalg.norm(size)), default=None)
     if largest is not None and spacing_m > float(np.linalg.norm(largest)):
         message = (
-            f"larger than the largest segment ({in_meters(largest.tolist(), ' x ')}): "
+            f"larger than the largest segment ({in_meters(largest.tolist())}): "
             f"{looks_like_millimeters(spacing_m)}"
         )
         raise InputError(None, "spacing_m", message)

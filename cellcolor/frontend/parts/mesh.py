@@ -83,7 +83,7 @@ def mesh_surface(
             raise InputError(None, "faces", "closed mesh inside out: its volume is negative")
     divided: tuple[TriangleMesh, Index] | None = None
     if max_edge_m is not None:
-        size = in_meters((np.ptp(vertices, axis=0) * meters_per_unit).tolist(), " x ")
+        size = in_meters((np.ptp(vertices, axis=0) * meters_per_unit).tolist())
         try:
             whole = TriangleMesh(mesh.points * meters_per_unit, mesh.corners)
             mesh, lies_in = refine(mesh, max_edge_m / meters_per_unit, deadline)
