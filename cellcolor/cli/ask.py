@@ -387,11 +387,7 @@ def setups(
 
 
 def _places_in(file: Path) -> list[tuple[float, ...]]:
-    """The placements of a file of JSON Lines that ``place`` has printed, without refused ones.
-
-    Raises:
-        InputError: it is something else, or has none.
-    """
+    """The placements of a file of JSON Lines that ``place`` has printed, without refused ones."""
     from cellcolor.files.documents import parse_json, read_text
 
     found: list[tuple[float, ...]] = []

@@ -134,14 +134,7 @@ def _check_solution(request: Request, subject: Subject, claim: Path) -> Exit:
 
 
 def _on_solution(subject: Subject, claim: Path, name: str) -> SolutionVerdict:
-    """The verdict on a solution's file, and on the schemes that follow the solution in it.
-
-    Args:
-        name: what the verdict says that the file is.
-
-    Raises:
-        InputError: one of the two cannot be used.
-    """
+    """The verdict on a solution's file, and on the schemes that follow the solution in it."""
     from cellcolor.door.judging import check
 
     instance, solution = subject.graph(), Solution.read(claim)

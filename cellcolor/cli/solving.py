@@ -327,11 +327,7 @@ def _spool(target: Path | None) -> Iterator[IO[bytes] | None]:
 
 
 def _found_in_time(schemes: Iterator[Division]) -> list[Division]:
-    """All of them, or those found when the time ran out; then at least one.
-
-    Raises:
-        OutOfTime: there was no time for any.
-    """
+    """All of them, or those found when the time ran out; then at least one."""
     found: list[Division] = []
     try:
         found.extend(schemes)

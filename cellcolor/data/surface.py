@@ -345,11 +345,7 @@ _KINDS = {float: ("iuf", "numbers"), int: ("iu", "integers")}
 
 
 def _rows(content: Any, member: str, kind: type) -> NDArray[Any]:
-    """An array of int64 or float64 of its own, unchangeable.
-
-    Raises:
-        InputError: these are other than numbers, or other than integers where they have to be.
-    """
+    """An array of int64 or float64 of its own, unchangeable."""
     if isinstance(content, np.ndarray):
         kinds, text = _KINDS[kind]
         if content.dtype.kind not in kinds:

@@ -254,11 +254,7 @@ def _prefixed(report: Callable[[str], None], arm: str) -> Callable[[str], None]:
 
 
 def _arm_file(arm: str | PathLike[str]) -> Path:
-    """The URDF that is meant; a file that is there goes before a shipped arm of that name.
-
-    Raises:
-        InputError: it is neither.
-    """
+    """The URDF that is meant; a file that is there goes before a shipped arm of that name."""
     path = path_of(arm)
     if path.is_file() or path.suffix or path.name != str(arm):
         return path

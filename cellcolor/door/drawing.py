@@ -268,16 +268,7 @@ def _number(names: tuple[str, ...], asked: str | int | None, file: str | None, f
 def _checked(
     subject: Subject, claim: Solution | str | PathLike[str] | None, *, on_surface: bool
 ) -> tuple[Solution, tuple[BoundVerdict, ...]]:
-    """A valid solution of the subject, with a division, and the checker's verdicts on its bounds.
-
-    Args:
-        subject: what the solution has to solve.
-        claim: the solution or its file.
-        on_surface: whether certificates are verified on the mesh instead of the graph.
-
-    Raises:
-        InputError: the solution is not valid, or has no division.
-    """
+    """A valid solution of the subject with a division, and the checker's verdicts on its bounds."""
     assert claim is not None
     file = None if isinstance(claim, Solution) else str(claim)
     solution = claim if isinstance(claim, Solution) else Solution.read(claim)

@@ -155,11 +155,7 @@ def cover(
 
 
 def _unit_rows(normals: Any, count: int) -> Array:
-    """Normals of length 1.
-
-    Raises:
-        InputError: they are not one for each vertex, or one of them has no direction.
-    """
+    """Normals of length 1."""
     from cellcolor.data.value import rows_of_three
 
     rows = rows_of_three(normals, "normals")

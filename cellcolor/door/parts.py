@@ -125,11 +125,7 @@ def _mesh(part: Any, deadline: Deadline, tell: Telling) -> tuple[Any, Any]:
 
 
 def _unit(vertices: Any, unit: str | None) -> str:
-    """The given unit, or the likely one.
-
-    Raises:
-        InputError: no such unit, or none is likely.
-    """
+    """The given unit, or the likely one."""
     from cellcolor.frontend.parts.mesh_file import UNITS, likely_unit
 
     if unit is not None:

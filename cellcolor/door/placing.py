@@ -220,11 +220,7 @@ def save_map(found: Placements, path: str | PathLike[str]) -> None:
 def _leeway(
     many: AskedPlacements, scene: Scene, placed: PlacedMinimum, up_to_m: float, seed: int
 ) -> Leeway:
-    """How far the part may be off a placement before its lift-offs rise.
-
-    Raises:
-        OutOfTime: the deadline came first.
-    """
+    """How far the part may be off a placement before its lift-offs rise."""
     from cellcolor.questions.placing import displaced
 
     own = scene.covered(NEVER).vertices

@@ -238,11 +238,7 @@ def _with_motion(scene: Scene, changes: Mapping[str, Any]) -> Scene:
 
 
 def _built(prepared: PreparedScene, path: Path | None, clock: StageClock) -> Subject:
-    """The scene, built.
-
-    Raises:
-        NothingCovered: no point of the object can be covered.
-    """
+    """The scene, built."""
     from cellcolor.frontend.build import build_prepared
 
     built = build_prepared(prepared, clock)

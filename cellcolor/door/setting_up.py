@@ -148,11 +148,7 @@ def setups(
 
 
 def _poses(at: Sequence[Sequence[float]] | Placements) -> list[Pose]:
-    """Places, each once.
-
-    Raises:
-        InputError: one is none.
-    """
+    """Places, each once."""
     if isinstance(at, Placements):
         return list(dict.fromkeys(row.pose for row in at if isinstance(row, PlacedMinimum)))
     poses = []

@@ -200,11 +200,7 @@ class Front:
         return replace(found, cost_cm2=cost(found.point.lift_offs, found.point.covered_share))
 
     def _cheapest(self, cost: Callable[[int, float], float]) -> FrontChoice:
-        """The point that costs least, of its lift-offs and the share that it covers.
-
-        Raises:
-            InputError: nothing is known.
-        """
+        """The point that costs least, of its lift-offs and the share that it covers."""
         if not self.points:
             raise InputError(None, None, "no division is known")
         point = min(self.points, key=lambda one: cost(one.lift_offs, one.covered_share))

@@ -210,11 +210,7 @@ def _finer(prepared: PreparedScene, longest: float, border: float) -> PreparedSc
 
 
 def _check_room(built: BuildResult) -> None:
-    """Refuse a step that would be too large, before it begins.
-
-    Raises:
-        TooLarge: with the numbers.
-    """
+    """Refuse a step that would be too large, before it begins."""
     vertices, tolerance = _GROWTH * len(built.surface.vertices), built.scene.tolerance
     if vertices > MOST_VERTICES:
         message = f"it would have {vertices:,} vertices or more, at most {MOST_VERTICES:,} fit"

@@ -103,11 +103,7 @@ def _together(found: Sequence[tuple[Scene, LabelledSurface]], refused: Sequence[
 
 
 def _built(prepared: PreparedScene, pose: Pose, deadline: Deadline) -> LabelledSurface:
-    """The part in a place, labelled, its vertices in its own frame.
-
-    Raises:
-        InputError: it cannot stand there, or nothing of it is reached.
-    """
+    """The part in a place, labelled, its vertices in its own frame."""
     there = prepared.at(Placement(position_m=pose[:3], rpy_rad=pose[3:]))
     within = stands_in(there)
     if within is not None:

@@ -204,19 +204,9 @@ def _most_covered(
 ) -> tuple[Collection[int], int] | None:
     """The cells that a few color regions cover, of the greatest weight.
 
-    Args:
-        regions: the color regions.
-        weights: of each cell, 0 or more.
-        segments: how many regions may be chosen.
-        required: cells that one of them has to cover.
-        deadline: when to return the best found.
-
     Returns:
         What they cover, all of it, and the weight that no choice exceeds; None if so few regions
         do not cover what is required.
-
-    Raises:
-        OutOfTime: the deadline came before any choice was known.
     """
     segments = min(segments, len(regions))  # where regions cut each other apart
     if comb(len(regions), segments) <= _FEW_CHOICES:  # a model takes longer to build than these
@@ -265,11 +255,7 @@ def _most_covered(
 
 
 def _weights(instance: Instance, given: Sequence[float] | None) -> list[float]:
-    """What each cell weighs.
-
-    Raises:
-        InputError: there are too few or too many, or one is negative or no number.
-    """
+    """What each cell weighs."""
     if given is None:
         areas = [cell.area for cell in instance.cells]
         known = [area for area in areas if area is not None]
