@@ -4,7 +4,7 @@ each other."""
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, astuple
+from dataclasses import astuple
 from math import isclose
 
 from cellcolor.checker.certificates import BoundVerdict
@@ -73,7 +73,7 @@ def claims(
     if solution.schemes is not None:
         found |= {"schemes": solution.schemes, "complete": solution.complete}
     if solution.coverage is not None and instance.coverage is None:
-        found["coverage"] = asdict(solution.coverage)
+        found["coverage"] = solution.coverage.to_document()
     return found
 
 

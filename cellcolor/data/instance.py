@@ -222,7 +222,7 @@ class Instance(Document):
         if self.surface is not None:
             document["surface"] = given_members(self.surface)
         if self.coverage is not None:
-            document["coverage"] = given_members(self.coverage)
+            document["coverage"] = self.coverage.to_document()
         if self.known is not None:
             results = given_members(self.known)
             document["known"] = {space: given_members(known) for space, known in results.items()}

@@ -17,7 +17,7 @@ from cellcolor.data.cells_and_edges import DartName, twin
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance
 from cellcolor.data.objective import Objective
-from cellcolor.data.value import Document, Value, adapter_of, given_members
+from cellcolor.data.value import Document, Value, adapter_of
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import (
@@ -330,7 +330,7 @@ class Solution(Document):
         if self.bounds is not None:
             document["bounds"] = [bound.to_document() for bound in self.bounds]
         if self.coverage is not None:
-            document["coverage"] = given_members(self.coverage)
+            document["coverage"] = self.coverage.to_document()
         if self.notes:
             document["notes"] = list(self.notes)
         document |= {
