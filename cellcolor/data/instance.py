@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import NonNegativeInt
 
@@ -90,7 +90,8 @@ class Instance(Document):
     surface: SurfaceReference | None = None
     known: KnownResults | None = None
     coverage: Coverage | None = None
-    _of_version_1: str | None = field(default=None, init=False, repr=False, compare=False)
+    # Of an instance that was read from a file of version 1. It is no member of the format.
+    _of_version_1: ClassVar[str | None] = None
 
     def __post_init__(self) -> None:
         settle(self)

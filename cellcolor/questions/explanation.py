@@ -143,6 +143,8 @@ class Explanation:
 
     def __str__(self) -> str:
         lines = [f"{self.name}: {self.base}"]
+        if self.base.lift_offs == 0:
+            lines.append("  no lift-off is left to save: only area can be gained")
         changing = [row for row in self.alone if not row.same_as(self.base)]
         lines += [f"  without {row.relaxed[0]}: {self._change(row)}" for row in changing]
         lines += [f"  {row.relaxed[0]}: {self._change(row)}" for row in self.amounts]
