@@ -12,15 +12,15 @@ import threading
 from contextlib import contextmanager
 from enum import IntEnum
 
+from cellcolor.signals import SIGNALS, handled_by
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Iterable, Iterator
     from types import FrameType
     from typing import Any
 
-    Handler = Callable[[int, FrameType | None], Any]
-
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+    from cellcolor.signals import Handler
 
 
 class Exit(IntEnum):
@@ -96,7 +96,7 @@ class Interrupts:
     def handle_with(self, handler: Handler | signal.Handlers) -> None:
         """Replace the signals' handlers for good."""
         if threading.current_thread() is threading.main_thread():
-            for number in _SIGNALS:
+            for number in SIGNALS:
                 signal.signal(number, handler)
 
     def check(self) -> None:
@@ -111,19 +111,3 @@ class Interrupts:
 
 INTERRUPTS = Interrupts()
 """Those of this process: signals come to no smaller part of it."""
-
-
-@contextmanager
-def handled_by(handler: Handler) -> Iterator[None]:
-    """Replace the signals' handlers; only the main thread can, and only there they run."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = {}
-    try:
-        for number in _SIGNALS:
-            before[number] = signal.signal(number, handler)
-        yield
-    finally:
-        for number, former in before.items():
-            signal.signal(number, signal.SIG_DFL if former is None else former)

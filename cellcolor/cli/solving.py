@@ -17,7 +17,7 @@ from typing import IO
 import click
 
 from cellcolor.checker.claimed_numbers import contradictions
-from cellcolor.cli.ending import INTERRUPTS, Exit, handled_by, worst
+from cellcolor.cli.ending import INTERRUPTS, Exit, worst
 from cellcolor.cli.inputs import read_subject
 from cellcolor.cli.progress import progress_of, scheme_progress_of
 from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solution
@@ -40,6 +40,7 @@ from cellcolor.files.writing import (
     write,
 )
 from cellcolor.questions.places import Place
+from cellcolor.signals import handled_by
 from cellcolor.solvers.interface import PORTFOLIO, STRANDS, Options
 
 _SOLUTION = kind_of_format(Solution.FORMAT)

@@ -334,7 +334,6 @@ def save_plot(path: str | PathLike[str], render: Callable[[str], bytes]) -> None
     """Save a plot of curves as .png or .svg; only an older picture is overwritten.
 
     Args:
-        path: the file.
         render: returns the picture's bytes for a format, ``png`` or ``svg``.
 
     Raises:

@@ -31,16 +31,7 @@ _EXTRAS = {
 }
 DISTRIBUTIONS = (
     *("click", "networkx", "numpy", "ortools", "pydantic", "rich"),
-    *(
-        "pin",
-        "python-fcl",
-        "scipy",
-        "trimesh",
-        "EAIK",
-        "ompl",
-        "potpourri3d",
-        "mcap",
-    ),
+    *("pin", "python-fcl", "scipy", "trimesh", "EAIK", "ompl", "potpourri3d", "mcap"),
     *("gpytoolbox", "matplotlib", "plotly"),
     *("clingo", "highspy", "pychoco", "pyscipopt", "python-sat", "dask", "distributed"),
 )
@@ -63,7 +54,6 @@ def require_motion(purpose: str, modules: Sequence[str]) -> None:
     """Fail at once if the extra ``motion`` is missing, not only when the first path is laid.
 
     Args:
-        purpose: what the modules are needed for.
         modules: of this extra, or of ``frontend``, which comes with it.
 
     Raises:

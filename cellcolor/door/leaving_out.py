@@ -66,8 +66,6 @@ def rest_of(
     """A subject without what is left out on purpose.
 
     Args:
-        subject: a scene, a labelled surface or an instance.
-        wanted: what has to be covered.
         options: deadline, workers and seed of the search for what is best left out, which takes
             half of the time that is left.
 
@@ -122,11 +120,7 @@ def front_on(
     """The front of a subject, with weights and places on its surface.
 
     Args:
-        subject: a scene, a labelled surface or an instance.
         weights: of each vertex (n,), as a factor of its area; None for 1.
-        required: what has to be covered.
-        options: deadline, workers and seed.
-        progress: told what is being done.
 
     Raises:
         InputError: weights or place are of another mesh, the subject has no surface, or nothing of

@@ -150,9 +150,8 @@ class AskedPlacements:
         """A row for each placement, in order; fewer if the deadline comes first.
 
         Args:
-            scene: the scene; its own placement does not matter.
+            scene: its own placement does not matter.
             mesh: what the table calls this scene's mesh.
-            poses: the placements.
 
         Raises:
             OutOfTime: the deadline came before the first.

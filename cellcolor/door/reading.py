@@ -19,6 +19,7 @@ from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable, read_trajectory_csv
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+from cellcolor.data.value import Document
 from cellcolor.door.extras import extras_for
 from cellcolor.door.shipped import find_file
 from cellcolor.door.subject import is_scene
@@ -28,25 +29,18 @@ from cellcolor.files.documents import parse_first_object, read_document, read_te
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene, Setup
 
-_Value: TypeAlias = (
-    LabelledSurface
-    | Instance
-    | Solution
-    | Plan
-    | ToolPaths
-    | Trajectory
-    | TrajectoryVerdict
-    | LibraryIndex
-)
-_KINDS: dict[str, type[_Value]] = {
-    LabelledSurface.FORMAT: LabelledSurface,
-    Instance.FORMAT: Instance,
-    Solution.FORMAT: Solution,
-    Plan.FORMAT: Plan,
-    ToolPaths.FORMAT: ToolPaths,
-    Trajectory.FORMAT: Trajectory,
-    TrajectoryVerdict.FORMAT: TrajectoryVerdict,
-    LibraryIndex.FORMAT: LibraryIndex,
+_KINDS: dict[str, type[Document]] = {
+    kind.FORMAT: kind
+    for kind in (
+        LabelledSurface,
+        Instance,
+        Solution,
+        Plan,
+        ToolPaths,
+        Trajectory,
+        TrajectoryVerdict,
+        LibraryIndex,
+    )
 }
 ReadTrajectory: TypeAlias = Trajectory | TrajectoryTable
 """A trajectory, or a table that a scene's arm has to complete."""

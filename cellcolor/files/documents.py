@@ -110,8 +110,6 @@ def take_body(
     """The document without ``format`` and ``version``, both of which must be the expected ones.
 
     Args:
-        document: the parsed JSON object.
-        expected: its format.
         since_version_2: the members that version 2 added, those of members as ``member.name``;
             without any there is only version 1.
     """

@@ -8,16 +8,15 @@ import secrets
 import signal
 import stat
 import sys
-import threading
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from types import FrameType
+
+from cellcolor.signals import handled_by
 
 if sys.platform != "win32":
     import fcntl
 
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 _TEMPORARY = re.compile(r"\.cellcolor-[0-9a-f]{16}\.tmp")
 
 
@@ -94,21 +93,10 @@ def _remove_stray(path: Path) -> None:
 @contextmanager
 def undisturbed() -> Iterator[None]:
     """Let signals wait until the end."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
     waiting: list[int] = []
-
-    def note(number: int, _frame: FrameType | None) -> None:
-        waiting.append(number)
-
-    before = {}
     try:
-        for number in _SIGNALS:
-            before[number] = signal.signal(number, note)
-        yield
+        with handled_by(lambda number, _frame: waiting.append(number)):
+            yield
     finally:
-        for number, handler in before.items():
-            signal.signal(number, signal.SIG_DFL if handler is None else handler)
         if waiting:
             signal.raise_signal(waiting[0])

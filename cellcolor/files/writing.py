@@ -117,8 +117,6 @@ def check_output(path: Path, kind: FileKind, inputs: Iterable[Path] = ()) -> Non
     about to be written. So no file of another kind is lost, such as a mesh that an input refers to.
 
     Args:
-        path: where a file is to be written.
-        kind: of the file to be written.
         inputs: files that the same command reads.
 
     Raises:

@@ -70,7 +70,6 @@ def better_painting(surface: LabelledSurface, painted: Painted) -> BetterPaintin
     """A painting, and the plan on the mesh as it was that it leaves.
 
     Args:
-        surface: the surface that was painted.
         painted: its painting; the vertices of the surface come first.
     """
     on_mesh = Plan(painted.plan.vertex_colors[: len(surface.vertices)])

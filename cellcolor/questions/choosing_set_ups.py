@@ -246,7 +246,6 @@ class _Asked:
         """Require that enough vertices have something chosen that covers them.
 
         Args:
-            model: to add that to.
             literals: of what can be chosen.
             covering: the numbers, for each vertex, of those that cover it.
         """
