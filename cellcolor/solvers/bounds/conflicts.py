@@ -4,7 +4,7 @@ The method looks at two color regions (``cover``) alone and merges their cells w
 separates them (``merged_surface``). A hub is a cell of all colors with a ring of one-colored cells,
 the petals. Around it, two petals of one color that alternate with two of another are in conflict:
 a segment that connects the first two separates the others. The proof is in
-docs/bounds.md, "Conflicts".
+docs/bounds/conflicts.md.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ MergedCell = frozenset[int]
 """The cells that a merged cell consists of; a segment touches it where it touches one of them."""
 
 MOST_CIRCLES = 6
-"""More independent closed curves than that (three handles have six) leave nothing to be concluded:
-for k of them 2^k curves have to be looked at."""
+"""With more independent closed curves than this (three handles have six), nothing is concluded:
+for k of them, 2^k sums have to be examined."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,10 +45,8 @@ class Parting:
 class RegionPair:
     """The surface for two color regions: merged cells with one color, the other or both.
 
-    Cells of both colors are merged as far as both colors continue. So, apart from cracks, edges
-    remain only between merged cells of one color and merged cells of both.
-
-    The two colors differ.
+    The two colors differ. Cells of both colors are merged as far as both colors continue. So, apart
+    from cracks, edges remain only between merged cells of one color and merged cells of both.
 
     Attributes:
         first: what segments of the first region do to those of the second.
@@ -116,8 +114,8 @@ class Side:
     def partings(self, near: int, far: int) -> list[Parting]:
         """The partings of the other region by a segment that touches two merged cells of its own.
 
-        There is one for each component of the wall (docs/bounds.md, "Conflicts") of whose merged
-        cells some are parted.
+        Each component of the wall (docs/bounds/conflicts.md) gives one, if the segment separates
+        some of its merged cells.
         """
         if not self._wall or not {near, far} <= self._tree.keys():
             return []
@@ -131,7 +129,7 @@ class Side:
         cells = self._surface.cells
         found = []
         for merged_cells in self._wall:
-            # Whatever is connected beside a curve in some class may be connected.
+            # The segment's own class is not known: what any class connects may be connected.
             together: UnionFind[int] = UnionFind(merged_cells)
             for chosen in range(1, 1 << len(curves), 2):
                 connected = self._connected(set(merged_cells), turns, chosen)
@@ -189,8 +187,8 @@ class Side:
     def _connected(self, wall: set[int], turns: Mapping[int, int], chosen: int) -> UnionFind[int]:
         """What ways connect, each merged cell in either parity: its name twice, plus the parity.
 
-        Ways of the other region are followed, with the parity of their crossings with the chosen
-        curves of the one region; merged cells of the wall may be passed in even parity only.
+        The parity of a way of the other region counts its crossings with the chosen curves of the
+        one region. By the proof it meets all merged cells of the wall in one parity, here even.
         """
         connected: UnionFind[int] = UnionFind()
         for edge, (left, right) in self._ways:
@@ -203,10 +201,10 @@ class Side:
         return connected
 
     def _components(self, parted: list[int], other: set[int]) -> list[list[int]]:
-        """The components with two merged cells or more of all that the one region cannot pass.
+        """The components of the wall that have two merged cells or more, each as its merged cells.
 
-        That is the merged cells of the other region alone, every edge that is not joinable for the
-        one, corners, and the border curves. Each component comes as its merged cells.
+        The wall is all that the one region cannot pass: the merged cells of the other region alone,
+        every edge that is not joinable for the one, corners, and the border curves.
         """
         wall = self._surface.borders()
         for edge in other:

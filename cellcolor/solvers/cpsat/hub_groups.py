@@ -3,8 +3,8 @@
 For a hub with one loop dynamic programming finds the best grouping. A hub with several loops is
 first cut open until it has one. A cut begins at a dart of one loop, ends at a dart of another, and
 stays in the area of one group, which gets both darts. It makes one loop of the two, which runs
-along the cut twice, once on each side, and halves of the group lie on both sides. Between the two
-darts any way will do, as all cells with the same loops are alike after it. So pairs of darts are
+along the cut twice, once on each side, and each side has a part of the group. Only the two
+darts matter, not the way between them: the loop that results is the same. So pairs of darts are
 chosen at random, and the best of several attempts is kept.
 """
 
@@ -53,8 +53,8 @@ def many_links(
 class _Cut(NamedTuple):
     """A cut that makes one loop of two.
 
-    Each end of the cut is an element of both sides: on the new loop two elements of its own stand
-    for the two sides, in place of the two darts.
+    It begins and ends at a dart, and both leave the loop. In their place the new loop has two
+    elements that stand for the two sides of the cut.
 
     Attributes:
         near: the element on the one loop where it begins.
@@ -136,7 +136,7 @@ class _Attempt:
         return best
 
     def _best(self, loop: _Loop) -> Grouping:
-        """The best grouping of the darts on a loop in which the last cut's group is no ring."""
+        """The best grouping with the last cut's sides in two groups; the cuts are undone."""
         colors = [self._colors[element] for element in loop.elements]
         apart = loop.elements.index(loop.cuts[-1].back) if loop.cuts else None
         groups: dict[int, Group] = {}

@@ -45,7 +45,7 @@ class ModelSearch:
     def solve(self, deadline: Deadline) -> None:
         """Solve the stages one after the other; the last one proves a bound."""
         stages = self._stages()
-        # Some may be equal: each is solved once, and what equals the last one is final.
+        # Equal stages are solved once, and a stage that equals the last one is final.
         for number, stage in enumerate(stages):
             if not self._part.done and stages.index(stage) == number:
                 self._minimize(*stage, deadline, final=stage == stages[-1])
@@ -53,14 +53,14 @@ class ModelSearch:
     def draw(
         self, planner: Planner, quota: Quota, effort: float, deadline: Deadline
     ) -> bool | None:
-        """Whether a division with as many segments as the bound keeps to a quota; one is offered.
+        """Look for a division that meets the bound and a quota of segments for each color region.
 
         Args:
-            planner: what has planned the part.
+            planner: the one whose plan gave the quota.
             effort: deterministic seconds.
 
         Returns:
-            None if that was not decided.
+            Whether there is one, which is then offered to the part; None if it was not decided.
         """
         colors = colors_within(quota, len(self._part.colors))
         stages = self._stages()

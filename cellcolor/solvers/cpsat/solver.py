@@ -34,8 +34,8 @@ from cellcolor.solvers.cpsat.schemes.enumeration import OptimalSchemes
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
 
 RESERVES = 4
-"""The search ends before the deadline by this multiple of the time to put a division together:
-that is needed once more for the answer, then by the checker, and for writing the file."""
+"""The search ends before the deadline by this multiple of the time to put a division together.
+That time is needed once more for the answer, then by the checker, and for writing the file."""
 
 _Stage = Callable[[PartSearch, Deadline], None]
 
@@ -137,7 +137,7 @@ class _Search:
             self._cut_least(colors)
 
     def answer(self) -> Answer:
-        """The best division, in the strands that were asked for, and what is proved of it."""
+        """The best division, in the strands that were asked for, and the proved bounds."""
         graph, painting = self._put_together()
         division = division_of(graph, painting, self._options.strands)
         if self._start is not None:
@@ -176,7 +176,7 @@ class _Search:
         self._fewest.run(*self._put_together())
 
     def _stages(self) -> list[_Stage]:
-        """What is done for every part that is not proved, before any goes on to the next."""
+        """The stages in order; each is done for all open parts before the next begins."""
         if not self._plans:
             return [PartSearch.cover, lambda part, deadline: part.models.solve(deadline)]
 
@@ -204,7 +204,7 @@ class _Search:
     def _run_stage(self, stage: _Stage, parts: list[PartSearch]) -> None:
         """One stage for some parts, each with its share of the time that is left.
 
-        Easy ones, which come first, leave most of theirs to the others.
+        Easy parts come first and leave most of their shares to the others.
         """
         for number, part in enumerate(parts):
             self._options.deadline.check()
@@ -251,7 +251,7 @@ class _Search:
         return dart_graph(self._instance, self._own, strands, seams, self._loops)
 
     def _bounds(self) -> tuple[Bound, ...]:
-        """What is proved of the number of segments, and how; bounds of parts add up."""
+        """The proved bounds of the number of segments, or of the cost; those of parts add up."""
         if not self._parts:
             return (Bound("strangers", len(greedy_strangers(self._instance)), "surface"),)
         certificate = conflict_certificate(self._left_out, self._parts)

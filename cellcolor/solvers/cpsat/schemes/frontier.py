@@ -44,7 +44,7 @@ class _Front(NamedTuple):
     Attributes:
         closed: segments that are complete.
         joined: what each open dart, one towards an unpainted cell, is joined with.
-        shown: what the zeros can show; at least one of these choices.
+        shown: every way in which the zeros can show colors, one or more (``shown_colors``).
     """
 
     closed: int
@@ -63,7 +63,7 @@ class Frontier:
         regions: color and cells of each color region.
         segments: of the schemes, the fewest there are.
         can_be_drawn: whether the blocks of a cell with several loops do not cross.
-        given: cells that are divided in one way only, all as in one scheme.
+        given: the division of cells that need not vary; all are from one scheme.
 
     Attributes:
         count: of all schemes.
@@ -96,11 +96,11 @@ class Frontier:
         ]
         self._needed = cache(self._needed_now)
         self._divisions = cache(self._divisions_now)
-        # Of each front in each layer the steps: a division of the next cell, and the number of the
-        # front in the next layer that it leads to. Those that lead to no scheme are left out.
+        # For each layer, for each front in it, its steps: a division of the next cell, and the
+        # number of the front that it leads to. Steps that lead to no scheme are left out.
         self._steps: list[list[list[tuple[Blocks, int]]]] = []
         ends = self._build()
-        # Of each front in each layer, how many schemes are reached from it.
+        # For each layer, for each front in it, how many schemes are reached from it.
         self._counts = [[1] * ends]
         for depth in reversed(range(len(self._steps))):
             after = self._counts[0]
@@ -220,9 +220,9 @@ class Frontier:
         return len(segments.sets()) - len(numbers), tuple(joined)
 
     def _needed_now(self, depth: int, held: int) -> int:
-        """As many regions, or more, include those held and touch every cell to come.
+        """A lower bound of the regions that include those held and touch every cell to come.
 
-        Cells that no held region touches need further ones: one each, if they share none.
+        Cells that no held region touches, and that share no region, need one more each.
         """
         cells = {
             sum(1 << self._region[cell, color] for color in self._graph.colors[cell])
