@@ -32,11 +32,11 @@ _OPTIONS = ("--opt-strategy=usc,stratify", "--parallel-mode=2")
 
 _MOST_CROSSINGS = 5_000_000
 """The most pairs of crossing links that a model may have. A link goes from one dart of a cell to
-another, and for every two links that would cross the model has a rule. Nothing can interrupt clingo
-while it writes the rules down, which takes up to ten seconds for that many."""
+another, and the model has a rule for every two links that would cross. Nothing can interrupt clingo
+while it writes these rules, which takes up to ten seconds for that many."""
 
 _HEARD_AFTER = 0.1
-"""Seconds between two looks at the deadline. Python handles a signal, such as Ctrl-C, only then."""
+"""Seconds between two looks at the deadline; Python handles a signal (Ctrl-C) only then."""
 
 
 class ClingoSolver:
@@ -92,7 +92,7 @@ class ClingoSolver:
                 while not search.wait(min(_HEARD_AFTER, deadline.left)) and not deadline.over:
                     pass
             except OutOfTime:
-                pass  # a signal that stands for the end of the time
+                pass  # a signal ended it early
             finally:
                 search.cancel()
                 complete = bool(search.get().exhausted)

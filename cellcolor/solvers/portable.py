@@ -1,4 +1,4 @@
-"""The problem written for solvers from outside, and their answers read, by format."""
+"""Writes the problem for external solvers and reads their answers, by format."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from cellcolor.solvers.seamed import Seamed
 
 @dataclass(frozen=True, slots=True)
 class Portable:
-    """A format in which a solver from outside can be given an instance.
+    """A format in which an external solver can be given an instance.
 
     Attributes:
         about: what reads it.
@@ -70,7 +70,7 @@ PORTABLE = {
         partial(_text, "%", asp_facts),
     ),
 }
-"""Each is the ending of its files as well."""
+"""The formats by name; the name is also the ending of the files."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,7 +226,7 @@ def _of_values(
 
 
 def _require_chains(instance: Instance, parsed: _Parsed) -> None:
-    """Refuse what is no sub-cells: joins in colors that do not continue, links of other darts."""
+    """Refuse an answer that is no division: wrong colors of joins, or links of other darts."""
     for edge, color in parsed.color.items():
         if edge not in instance.live_edges or color not in instance.joinable(edge):
             raise InputError(None, f"joined {edge}", f"color {color} does not continue there")

@@ -34,7 +34,7 @@ class Ranks(Trees):
         }
         # Per dart: it or a dart before it in its sub-cell leads up.
         self.met = {dart: model.new_bool_var(f"met_{dart}") for dart in problem.darts}
-        # Per cell: its one sub-cell is the root of a tree; no join of it is counted.
+        # Per cell: root, its one sub-cell is the root of a tree; alone, no join of it is counted.
         cells = range(len(problem.cells))
         self.root = {cell: model.new_bool_var(f"root_{cell}") for cell in cells}
         self.alone = [model.new_bool_var(f"alone_{cell}") for cell in cells]
@@ -64,7 +64,7 @@ class Ranks(Trees):
         return [self.link[one, other]] if (one, other) in self.link else []
 
     def _one_parent(self) -> None:
-        """A sub-cell has one dart at most that leads up: once it is met, no further one does."""
+        """At most one dart of a sub-cell leads up: after the first, no later one does."""
         for dart, literal in self.up.items():
             self.model.add_implication(literal, self.met[dart])
         for (one, other), link in self.link.items():
@@ -89,7 +89,7 @@ class Ranks(Trees):
                 self.model.add_implication(alone, ~self.up[-dart])
 
     def _no_circles(self) -> None:
-        """One rank for all of a sub-cell, higher by one or more than that of its parent."""
+        """All darts of a sub-cell have one rank, which is higher than that of its parent."""
         for dart, literal in self.up.items():
             self.model.add(self.rank[dart] > self.rank[-dart]).only_enforce_if(literal)
         for (one, other), literal in self.link.items():

@@ -22,7 +22,7 @@ from cellcolor.solvers.joined_chains import division_of_chains
 
 STRATEGIES = "core", "default_lp"
 """CP-SAT's strategies for one or two workers. ``core`` raises the bound by unsatisfiable cores;
-``default_lp`` finds divisions, of which none is known here beforehand."""
+``default_lp`` finds divisions, since none is known at the start."""
 
 
 class Encoding(ABC):
@@ -45,8 +45,8 @@ class Encoding(ABC):
             for color in sorted(colors)
         }
         self._variables()
-        # Cover and links are redundant: they are implied by there being few segments, and homes
-        # and petals leave some division with as few. All four make proofs quick.
+        # These four make proofs quick. Every division with the fewest segments satisfies cover and
+        # links; some such division satisfies homes and petals too.
         redundant = self._cover, self._most_links, self._homes, self._first_petal
         for group in (*self._groups(), *redundant):
             deadline.check()
@@ -105,7 +105,7 @@ class Encoding(ABC):
 class Trees(Encoding):
     """A segment as a tree of sub-cells: in each but the root one dart leads up to the parent.
 
-    What ``pointers`` and ``ranks`` have in common: chains of darts in one color that do not cross.
+    This is what ``pointers`` and ``ranks`` share: chains of darts in one color that do not cross.
     """
 
     up: dict[int, cp_model.IntVar]
@@ -113,7 +113,7 @@ class Trees(Encoding):
 
     @abstractmethod
     def _link(self, one: int, other: int) -> list[cp_model.IntVar]:
-        """The literals that make neighbours of two darts in list order."""
+        """The literals that make neighbors of two darts in list order."""
 
     def _counted(self, dart: int) -> cp_model.LinearExpr:
         """1 if the dart's join is counted: its edge then has a child on one of its sides."""
@@ -126,7 +126,7 @@ class Trees(Encoding):
             self.model.add_at_most_one(self.up[edge], self.up[-edge])
 
     def _one_chain(self) -> None:
-        """A sub-cell is a chain: each of its darts has one neighbour after it and one before it."""
+        """A sub-cell is a chain: each dart has at most one neighbor after it and one before it."""
         after: dict[int, list[cp_model.IntVar]] = defaultdict(list)
         before: dict[int, list[cp_model.IntVar]] = defaultdict(list)
         for one, other in self.problem.pairs():
@@ -137,7 +137,7 @@ class Trees(Encoding):
                 self.model.add(sum(found) <= self._counted(dart))
 
     def _equal_colors(self) -> None:
-        """Neighbours in a sub-cell are joined in one and the same color."""
+        """Neighbors in a sub-cell are joined in the same color."""
         for one, other in self.problem.pairs():
             for here, there in ((one, other), (other, one)):
                 for color in sorted(self.problem.colors_of(here)):
@@ -149,10 +149,9 @@ class Trees(Encoding):
     def _no_crossing(self) -> None:
         """Cutting paths do not cross, so neither do links.
 
-        Take a dart and a later one. A link that comes from before the first and ends at the second
-        goes over the first; a link from the first to beyond the second would cross that. So at most
-        one of all these is there: two of the first kind share their end, two of the second their
-        start.
+        Take a dart and a later one. A link from before the first to the second passes over the
+        first, so a link from the first to beyond the second crosses it. Two links of the first kind
+        share their end, two of the second kind their start. So at most one of all these holds.
         """
         for cell in self.problem.cells:
             for place, dart in enumerate(cell):

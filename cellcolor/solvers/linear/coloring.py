@@ -52,7 +52,7 @@ def color_regions(instance: Instance) -> dict[tuple[int, int], Region]:
                     waiting.append(other)
         color = begin[1]
         edges = {abs(dart) for cell in cells for dart in exits[cell, color]}
-        # The color goes no further in a cell with one exit: a way meets two such cells at most.
+        # A cell with one exit is an end: a way meets two such cells at most.
         ends = {abs(exits[cell, color][0]) for cell in cells if len(exits[cell, color]) == 1}
         longest = len(edges) - len(ends) + min(2, len(ends))
         for cell in cells:
@@ -68,7 +68,7 @@ in a solver that holds it a few times over."""
 def estimated_terms(instance: Instance) -> int:
     """About how many literals the model of an instance has, found without making it.
 
-    Nearly all are those that keep cutting paths from crossing and those of ranks.
+    Nearly all literals are in the constraints on crossings and on ranks.
     """
     regions = color_regions(instance)
     total = 0
@@ -81,7 +81,7 @@ def estimated_terms(instance: Instance) -> int:
 
 
 class Coloring:
-    """The model of an instance; ``joined`` and ``link`` are what a solution is read off.
+    """The model of an instance; a solution is read off ``joined`` and ``link``.
 
     Attributes:
         joined: (edge, color) -> the edge is joined in this color.
@@ -143,7 +143,7 @@ class Coloring:
                 continue
             link = self.link[dart, other] = model.new("link", dart, other)
             colored = {c: model.new("linked", dart, other, c) for c in common[1:]}
-            if colored:  # else the link has the one color that there is
+            if colored:  # with one common color the link itself stands for it
                 colored[common[0]] = model.new("linked", dart, other, common[0])
                 model.exactly([-link, *colored.values()])
             for color in common:

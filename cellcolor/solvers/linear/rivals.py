@@ -1,8 +1,8 @@
-"""A solver from outside on the 0-1 model, in a process of its own that is killed at the deadline.
+"""External solvers on the 0-1 model, each in its own process, which is killed at the deadline.
 
-HiGHS cannot be loaded into a process that has loaded OR-Tools, both of which bring the same library
-in different versions; and none of these solvers keeps a time limit to the second. So each is run as
-a program (``programs``). It reads the file that ``cellcolor export`` writes and prints what it
+HiGHS and OR-Tools bring the same library in different versions, so one process cannot load both.
+None of these solvers keeps a time limit to the second either. So each is run as a program
+(``programs``). It reads the file that ``cellcolor export`` writes and prints what it
 knows at once: lines ``bound B`` and ``solution x1 x7 …`` (the variables that are 1), and ``done``
 once the last solution is proved the best.
 """
@@ -71,11 +71,11 @@ class _Rival:
             arguments = self.name, str(file), f"{0.9 * deadline.left:.2f}", str(options.seed)
             command = [sys.executable, "-m", "cellcolor.solvers.linear.programs", *arguments]
             with Child(command, Path(place)) as child:
-                # A signal may stand for the end of the time: OutOfTime.
+                # A signal may end this early, as an OutOfTime.
                 for line in child.lines(deadline):
                     word, _, rest = line.partition(" ")
                     if word == "bound":
-                        # A solver's own bound is off by its tolerance.
+                        # A solver's bound may exceed the true one by its tolerance.
                         bound = max(bound, math.ceil(float(rest) - 1e-4))
                     elif word == "solution":
                         true = frozenset(int(name.removeprefix("x")) for name in rest.split())
@@ -83,7 +83,7 @@ class _Rival:
                     elif word == "done" and best is not None:
                         bound = count_segments(best)
                     else:
-                        continue  # one of the solver's own, which says nothing to us
+                        continue  # other output of the solver
                     if progress is not None:
                         progress(None if best is None else count_segments(best), bound)
                 failure = child.failure
