@@ -14,13 +14,13 @@ from cellcolor.tool_paths.refused import Codes
 
 FOLDED = "folded"
 """The reason where the normal leads behind the surface's own triangle, as on a sharp fold."""
-_NEAR = 12  # small triangles of which one is looked for that a point lies in
-_FACING = float(np.cos(np.radians(85.0)))  # of the normal to the triangle; the judge has 90 degrees
+_NEAR = 12  # nearest small triangles among which the one under a point is sought
+_FACING = float(np.cos(np.radians(85.0)))  # of normal to triangle; the judge allows 90 degrees
 _INSIDE = 1e-9  # m, and in shares of a triangle
 
 
 class ArmRefusals:
-    """The tests of the cells in one branch, and places where a sample of a path has failed.
+    """The tests of the arm in one branch, and places where a sample of a path has failed.
 
     Attributes:
         names: of the codes: those of the scene's judge, one for a branch that jumps, and one for a
@@ -39,11 +39,11 @@ class ArmRefusals:
         around: float,
         deadline: Deadline,
     ) -> None:
-        """What is known of the corners of the segment's small triangles is taken over.
+        """Begin with the known results at the corners of the segment's small triangles.
 
         Args:
             touched: (n,) the vertices of the surface that paths may come near to.
-            around: so far from a sample that has failed everything is refused, m.
+            around: everything this near to a sample that has failed is refused, m.
         """
         self._prepared, self._branch, self._deadline = prepared, branch, deadline
         self.names = (*prepared.judge.reason_names, JUMP, FOLDED)
@@ -100,7 +100,7 @@ class ArmRefusals:
 
         Args:
             part_of: (6 m,) the part of each small triangle, or -1.
-            turns: (p, joints) full circles to add in each part.
+            turns: (p, joints) how many full circles to add to each joint in each part.
         """
         own = np.flatnonzero(part_of >= 0)
         joints = self._states.joints[own]
@@ -139,14 +139,14 @@ class ArmRefusals:
         return np.asarray(((found < space.lower) | (found > space.upper)).any(axis=1))
 
     def _keys(self, points: Array, normals: Array) -> Array:
-        """Places (k, 6) that are apart for the two sides of a thin part as well."""
+        """Keys (k, 6) for nearest neighbors, which keep the two sides of a thin part apart."""
         return np.column_stack([points, self._apart * normals])
 
 
 def _folded(small: SmallTriangles, touched: Mask) -> list[int]:
     """The triangles beside some vertices (n,) where the normal may lead behind them, ascending.
 
-    A normal between those of the corners is nearer to the triangle's own than the farthest one is.
+    No normal between those of the corners is farther from the triangle's own than the worst corner.
     """
     mesh = small.whole
     normals = small.normals[mesh.corners]

@@ -1,7 +1,7 @@
 """A trajectory with configurations put in wherever two samples are too far apart to be trusted.
 
-The planner has a space of joints, and angles between vectors, of its own. The judge keeps the few
-lines here to itself on purpose: with the planner's it would not find the planner's faults.
+The planner has its own code for joint steps and for angles between vectors. The judge repeats these
+few lines on purpose: with the planner's code it would not find the planner's faults.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.tolerances import STEP, STEP_ANGLE
 
 _MOST = 3_000_000  # configurations; some hundred bytes each
-_SLACK = 1e-6  # of a step; samples laid out just as far apart as they may need none in between
+_SLACK = 1e-6  # of a step: samples exactly one step apart need none in between
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Dense:
 
     Attributes:
         sample: (d,) the sample, or the one before.
-        way: (d,) how far it is to the next sample, 0 at a sample.
+        way: (d,) the share of the way to the next sample, 0 at a sample.
         joints: (d, joints) in rad or m.
         tips: (d, 3) where the tool's tip is, m.
         axes: (d, 3) unit vectors along the tool, from the flange to the tip.
@@ -49,7 +49,7 @@ class Dense:
         return len(self.sample)
 
     def where(self, row: int) -> str:
-        """What a sentence about a row ends with if that is no sample."""
+        """How a sentence about a row ends; empty for a sample."""
         return ", between it and the next sample" if self.way[row] else ""
 
     @property
@@ -90,7 +90,7 @@ def poses_of(robot: Robot, joints: Array, deadline: Deadline) -> tuple[Array, Ar
 def densified(
     trajectory: Trajectory, robot: Robot, tips: Array, axes: Array, skip: Mask, deadline: Deadline
 ) -> Dense:
-    """Put configurations in so that tip, tool axis and joints move only a little from one to next.
+    """Insert configurations, so that tip, axis and joints move at most a step from one to the next.
 
     Args:
         tips, axes: (k, 3) of the samples.

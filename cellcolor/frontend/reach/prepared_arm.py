@@ -1,4 +1,4 @@
-"""An arm prepared: what its setup names, read once, wherever a part stands before it."""
+"""An arm, its tool and its task, read once from a setup; no part is needed yet."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ class PreparedArm:
         robot: arm and tool.
         kinematics: the arm's inverse kinematics.
         conditioning: the thresholds for this arm.
-        nameless: the same arm, where its solutions have no names and its branches are sheets over
-            a surface (:mod:`cellcolor.frontend.reach.sheets`).
+        nameless: None, or if the branches are sheets over a surface
+            (:mod:`cellcolor.frontend.reach.sheets`), the arm whose solutions have no names.
     """
 
     setup: Setup
@@ -53,33 +53,33 @@ class PreparedArm:
 
     @property
     def named(self) -> bool:
-        """Whether the arm's family names the solutions."""
+        """Whether the arm's family names the solutions: no sheets are needed then."""
         return self.nameless is None and bool(self.kinematics.branches)
 
     @property
     def bare(self) -> PreparedArm:
-        """With the kinematics of its family."""
+        """The arm without sheets: with the kinematics of its family."""
         bare = self if self.nameless is None else replace(self, kinematics=self.nameless.kinematics)
         return replace(bare, nameless=None)
 
     @cached_property
     def near_object(self) -> Robot:
-        """The robot with all that the setup's margin keeps free of the object."""
+        """The robot, wider by the distance that the setup keeps from the object."""
         return wider(self.robot, self.setup.margins.to_object_m)
 
     @cached_property
     def near_obstacles(self) -> Robot:
-        """The same of obstacles."""
+        """The same for obstacles."""
         return wider(self.robot, self.setup.margins.to_obstacles_m)
 
     @cached_property
     def near_ground(self) -> Robot:
-        """The same of the ground."""
+        """The same for the ground."""
         return wider(self.robot, self.setup.margins.to_ground_m)
 
     @cached_property
     def near_itself(self) -> Robot:
-        """The same of other links: of two that keep a distance each keeps half of it."""
+        """The same for other links: each of two links is wider by half of their distance."""
         return wider(self.robot, self.setup.margins.between_links_m / 2)
 
     def inverse(self, points: Array, directions: Array, deadline: Deadline = NEVER) -> Array:
@@ -106,7 +106,7 @@ class PreparedArm:
 
     @property
     def _bytes_of_solving(self) -> int:
-        """What the inverse kinematics of a pose takes at most."""
+        """How many bytes the inverse kinematics of a pose takes at most."""
         return 128 * self.robot.joints * self.slots
 
     @property
@@ -119,7 +119,7 @@ class PreparedArm:
         return Measure(policy, near_singular, own.lever, slides, own.reach)
 
     def without_turn(self, points: Array, directions: Array) -> Mask:
-        """Where the setup gives the tool's turn by a rule that says nothing there, (n,)."""
+        """Where the setup's rule for the tool's turn gives no turn, (n,)."""
         turn = self.setup.task.turn
         if turn is None:
             return np.zeros(len(points), dtype=bool)
@@ -225,7 +225,7 @@ def _contact_in_tip(task: Task) -> Array:
 
 
 def _task(setup: Setup, family: type[InverseKinematics]) -> TaskSpace:
-    """What is asked of an arm of the family: no less than its joints can do, and no more."""
+    """The task of an arm of the family; refused if its joints are too few or too many for it."""
     name, joints, given = setup.robot.kinematics, family.joints, setup.task.turn is not None
     task = family.given_turn if given else family.free_turn
     if task is None:
@@ -252,7 +252,7 @@ def _task(setup: Setup, family: type[InverseKinematics]) -> TaskSpace:
 
 
 def _check_last_joint(robot: Robot) -> None:
-    """Refuse a joint that only turns the tool where its turn is free, and no joint is locked."""
+    """Refuse a last joint that only turns the tool, where its turn is free and it is not locked."""
     task = robot.task
     turns_tool = task.most_joints > task.joints >= robot.joints
     if turns_tool and not robot.slides[-1] and is_tool_on_last_axis(pose_at_zero(robot)):
@@ -266,7 +266,7 @@ def _check_last_joint(robot: Robot) -> None:
 
 
 def _urdf(named: str, key: str, folder: Path) -> Urdf:
-    """The URDF in a file, or the one that is there itself; then errors name the key."""
+    """The URDF of a file, or the URDF given as text; errors then name the key."""
     if named.lstrip().startswith("<"):
         return parse_urdf(named, Path(key), folder)
     return load_urdf(folder / named)
