@@ -25,9 +25,9 @@ from cellcolor.decomposition.borders import Step
 from cellcolor.union_find import UnionFind
 
 _AT_A_WALL, _AT_A_PIECE = 10, 1000
-"""Cost of a vertex beside a wall, and beside a piece of another unfinished sub-cell; of any other
-vertex it is 1. So a way across makes short detours round walls, and long ones round pieces, which
-must not be shut in because they have to be connected later."""
+"""Cost of a vertex beside a wall, and beside a piece of another unfinished sub-cell; any other
+vertex costs 1. So a way across makes short detours round walls. It makes long ones round pieces:
+they have to be connected later, so they must not be shut in."""
 
 
 class TooNarrow(Exception):
@@ -44,7 +44,7 @@ class Trees:
         owner: the sub-cell of each vertex on a tree.
         owned: the vertices on the tree of each sub-cell.
         piece: the vertices of each piece, united.
-        pieces: how many pieces each sub-cell has.
+        pieces: how many pieces each sub-cell has; it is finished with one.
     """
 
     def __init__(
@@ -105,7 +105,7 @@ class Trees:
             if path is None:
                 raise TooNarrow
             block, way = path
-            self.pieces[block] += len(way)
+            self.pieces[block] += len(way)  # each vertex alone at first: _take unites them
             for vertex in way:
                 self._take(vertex, block)
         return self.owner
@@ -178,8 +178,8 @@ class Trees:
                 if block != other or self.piece[walk[here][1]] == self.piece[walk[there][1]]:
                     continue
                 steps = walk[here : there + 1] if here < there else walk[here:] + walk[: there + 1]
-                # Two successive vertices of the way are no neighbors if the walk goes round the
-                # end of a crack between them. Then they are two pieces, connected next through the
+                # Where the walk goes round the end of a crack, two successive vertices of the way
+                # are not neighbors. Then they are two pieces, connected by a later step through the
                 # vertex ahead of that end.
                 way = list(dict.fromkeys(f for f, _ in steps))
                 if (best is None or len(way) < len(best[1])) and self._leaves_room(block, way):

@@ -1,4 +1,4 @@
-"""Every segment of a painted surface covered by tool paths."""
+"""Covers every segment of a painted surface with tool paths."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ from cellcolor.tool_paths.rounding import Line, rounded
 from cellcolor.tool_paths.spurs import with_spurs
 from cellcolor.tool_paths.triangles import Triangles
 
-_TRIANGLES = 24  # for each square of the spacing, about
+_TRIANGLES = 24  # about so many for each square of the spacing
 _MOST_TRIANGLES = 4_000_000
 _REFUSED = 0.25  # spacings: sides of triangles at the border of what is refused
 _LEAST_AREA = 0.25  # spacings squared: smaller parts have no path
-_OFTEN = 1.15  # visits in the mean; where a pattern makes more, a single line is tried,
-_NARROW = 2.0  # if the part is narrower in the mean, in spacings
-_MIDDLE = 0.15  # spacings: so near to its middle that line is
-_COVERED = 0.98  # share of the part's area that this has to cover, if the pattern does
+_OFTEN = 1.15  # visits in the mean: with more than that by the pattern, a single line is tried
+_NARROW = 2.0  # spacings: but only on a part that is narrower than this in the mean
+_MIDDLE = 0.15  # spacings: how near that line is to the middle of the part
+_COVERED = 0.98  # share of the area that it has to cover, or as much as the pattern if that is less
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Covered:
-    """Tool paths, and what they are worth.
+    """Tool paths, with their measures and what they leave uncovered.
 
     Attributes:
         paths: one path for every connected part of a segment that is large enough.
@@ -155,7 +155,7 @@ def _parts(
             Uncovered(region.segment, place.area_m2, _point(place.place), place.why)
             for place in refused
         ]
-    if overlap is not None:  # what is refused beyond the border is not the segment's
+    if overlap is not None:  # refusals beyond the border do not count for the segment
         inside = segment_of >= 0
         widened = np.where(overlap.widened(surface, inside), segment_of.max(), -1)
         parts = [
@@ -171,7 +171,7 @@ def _parts(
 def _better(
     lay: Pattern, part: Triangles, segment: int, spacing: float, deadline: Deadline
 ) -> tuple[Line, PathMeasures, list[Uncovered]]:
-    """A line by a pattern, or one along the part with spurs where that goes over it less often.
+    """The pattern's line, or one along the part with spurs if that visits it less often.
 
     In a part that is hardly wider than the spacing, loops go over most places twice.
     """

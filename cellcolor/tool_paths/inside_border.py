@@ -13,18 +13,18 @@ from cellcolor.tool_paths.region import Region
 from cellcolor.tool_paths.rounding import Line
 from cellcolor.tool_paths.triangles import Triangles
 
-_TURNED = 1e-6  # rad; a border that turns by less is straight, and has no direction to keep off to
-_STRAIGHT = 1e-8  # m; a point so little beside the way past it is left out
-_INWARD = 2e-5  # m; so far off the border points are put that lie on it
+_TURNED = 1e-6  # rad; a border that turns by less counts as straight: it has no inward direction
+_STRAIGHT = 1e-8  # m; a point this near to the straight way past it is left out
+_INWARD = 2e-5  # m; how far points on the border are moved off it
 _INWARD_SHARE = 0.1  # of the way into the triangle, at most
 
 
 def inside_border(region: Region, line: Line) -> tuple[ToolPath, Index]:
-    """The path in the world.
+    """The path in the world, moved off the border by a hair.
 
-    Each step stays in its triangle. A path that goes on along the border is led round the vertex
-    between, over the edges that meet there. Where a path turns round a corner of the border
-    elsewhere, such as the end of a crack, it keeps off that as well.
+    Each step stays in its triangle. Between two steps along the border the path goes round their
+    common vertex, over the edges that meet there. Where it only turns round a corner of the border,
+    such as the end of a crack, it keeps off that corner as well.
 
     Returns:
         The path, and the numbers of the points that must be sampled, since a chord past them would
@@ -99,9 +99,9 @@ def _round(
 ) -> list[tuple[int, int]] | None:
     """The way round a vertex of the border, from one triangle at it to another.
 
-    It comes along the border from ``behind``. Returned are the other ends of the edges that are
-    crossed, each with the triangle before it; None where the triangles at the vertex are not
-    connected, as where parts touch in a point.
+    The way comes along the border from ``behind``. It is returned as the other ends of the edges
+    that it crosses, each with the triangle before it; None where the triangles at the vertex are
+    not connected, because parts touch in a point.
     """
     spokes, triangle = list[tuple[int, int]](), first
     while triangle != last:
@@ -138,8 +138,8 @@ def _bends(points: Array, owns: Index) -> Mask:
 def _off_corners(mesh: Triangles) -> Array:
     """How far (n, 3) to keep off corners at each point, m.
 
-    Corners are points of the border with more than half a circle inside. On those whose triangles
-    all lie in one triangle of the surface a point can be moved.
+    Corners are points of the border with more than half a circle inside. A point can be moved off
+    only if all triangles around it lie in one triangle of the surface.
     """
     corners = mesh.corners.ravel()
     angles, inward = np.zeros(len(mesh.points)), np.zeros((len(mesh.points), 3))
@@ -151,15 +151,15 @@ def _off_corners(mesh: Triangles) -> Array:
     along /= np.where(lengths > 0, lengths, 1.0)  # vertices may coincide
     np.add.at(inward, border[:, 0], -along)
     np.add.at(inward, border[:, 1], along)
-    least, most = np.full(len(mesh.points), np.inf), np.full(len(mesh.points), -1)
+    shortest, last = np.full(len(mesh.points), np.inf), np.full(len(mesh.points), -1)
     first = np.full(len(mesh.points), len(mesh.faces) + int(mesh.faces.max(initial=0)))
     faces = np.repeat(mesh.faces, 3)
-    np.minimum.at(least, mesh.edges.ravel(), np.repeat(mesh.lengths, 2))
+    np.minimum.at(shortest, mesh.edges.ravel(), np.repeat(mesh.lengths, 2))
     np.minimum.at(first, corners, faces)
-    np.maximum.at(most, corners, faces)
+    np.maximum.at(last, corners, faces)
     sizes = np.linalg.norm(inward, axis=1)
-    turned = mesh.border & (angles > np.pi + _TURNED) & (first == most) & (sizes > 0)
-    far = np.where(turned, np.minimum(_INWARD, _INWARD_SHARE * least), 0.0)
+    turned = mesh.border & (angles > np.pi + _TURNED) & (first == last) & (sizes > 0)
+    far = np.where(turned, np.minimum(_INWARD, _INWARD_SHARE * shortest), 0.0)
     return far[:, None] * inward / np.where(sizes > 0, sizes, 1.0)[:, None]
 
 
