@@ -136,7 +136,7 @@ def _shipped_families(pattern: str) -> list[list[Specimen]]:
 
 
 def _contestants(names: Sequence[str]) -> Iterator[Contestant]:
-    """Those that can take part; of each of the others a line."""
+    """The solvers that are installed; each of the others gets a line."""
     for name in dict.fromkeys(names):
         try:
             yield contestant(name)
@@ -145,7 +145,7 @@ def _contestants(names: Sequence[str]) -> Iterator[Contestant]:
 
 
 def _print(made: Sequence[Row], sweep: Sweep, wrong: Sequence[str]) -> None:
-    """A line for each instance, unless there are many, and one for all."""
+    """Print a line for each instance, unless there are many, and one for all."""
     groups = by(made, lambda row: (row.subject, row.sha256, row.limit))
     if made and len(groups) <= _SHOWN:
         names = contestants_of(made)
@@ -180,7 +180,7 @@ def _segments(rows: Sequence[Row]) -> str:
 
 
 def _seconds(rows: Sequence[Row]) -> str:
-    """The median of the repetitions, or how they ended else."""
+    """The median of the repetitions, or how they ended if most proved nothing."""
     if not rows:
         return ""
     if 2 * sum(row.solved for row in rows) > len(rows):

@@ -1,4 +1,4 @@
-"""What is minimised: what segments, area left uncovered and change-overs cost together."""
+"""What is minimized: the sum of what segments, uncovered area and change-overs cost."""
 
 from __future__ import annotations
 
@@ -40,17 +40,17 @@ class Objective(Value):
 
     @property
     def asked(self) -> tuple[str, ...]:
-        """The names of the attributes that say something else than the default."""
+        """The names of the attributes that are not the default."""
         costs = any(cost != 1 for cost in self.segments.values())
         prices = ("uncovered_price", "change_over")
         others = tuple(name for name in prices if getattr(self, name) is not None)
         return (("segments",) if costs else ()) + others
 
     def allow(self, *names: str) -> None:
-        """Refuse what is asked besides some attributes.
+        """Refuse an objective that sets other attributes than these.
 
         Raises:
-            InputError: something else than these is asked for.
+            InputError: another attribute is set.
         """
         for name in self.asked:
             if name not in names:
@@ -74,8 +74,8 @@ class Objective(Value):
         """The sum.
 
         Args:
-            segments: what they cost, or any number in their place that differs from it by a fixed
-                one, such as that of lift-offs.
+            segments: what they cost; or, to compare sums only, a number that differs from it by a
+                constant, such as the number of lift-offs.
             uncovered: the share that is left uncovered, 0 to 1.
             set_ups: how many there are. A change-over counts as what it costs beyond the lift-off
                 that it takes, and one is counted before the first set-up.

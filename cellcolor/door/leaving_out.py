@@ -1,4 +1,4 @@
-"""What is left out on purpose: places to leave alone, and whatever a share does not need."""
+"""What is left out on purpose: places to leave alone, and what a share or a price leaves out."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Wanted:
     Attributes:
         cover: the share of the area that can be covered and is not left alone, 0 to 1; None for
             all of it.
-        required: what has to be covered whatever the share leaves out.
+        required: what has to be covered in any case.
         left_alone: what must not be covered.
         objective: without a share, its price for area left uncovered decides.
 
@@ -188,7 +188,7 @@ def _cells(subject: Subject) -> np.ndarray:
 
 
 def _weights(subject: Subject, instance: Instance, given: Sequence[float] | Array) -> list[float]:
-    """What each cell weighs, of the weights of its vertices by their areas."""
+    """What each cell weighs: the sum over its vertices of weight times area."""
     own = np.asarray(given, dtype=float)
     areas = subject.surface.vertex_areas
     if own.shape != areas.shape:

@@ -33,12 +33,12 @@ if TYPE_CHECKING:
     from cellcolor.pictures.report_page.content import AnsweredScene, Answers
 
 _NEEDED = ("pinocchio", "fcl", "trimesh", "scipy", "potpourri3d", "ompl")
-_FOR_SOLVING = 0.5  # of the time that is left then; a proof can take any time
+_FOR_SOLVING = 0.5  # share of the time left then; a proof can take any time
 _QUESTIONS = ("tradeoff", "explain", "place", "setups")  # that a plan's page can answer besides
-_MOVED = 0.1  # m; so far a question moves the part along x and y
-_PLACEMENTS = 32
-_DIVISIONS = 3  # that are driven, while the arm finds no way to some color
-_FOR_BUILDING = 0.6  # of the time that is left then, with several set-ups
+_MOVED = 0.1  # m; how far the question ``place`` moves the part along x and y
+_PLACEMENTS = 32  # that the question ``place`` tries
+_DIVISIONS = 3  # tried at most: another if the arm finds no way to some color
+_FOR_BUILDING = 0.6  # share of the time left then, for the question ``setups``
 
 
 def plan(
@@ -148,7 +148,7 @@ def plan(
             return _Driven(subject, result, painting, planned)
 
         tried = [driven(subject, result)]
-        least = tried[0].result.solution  # the proof with all colors, which has to hold
+        least = tried[0].result.solution  # with all colors: no other division may need more
         while least.proved_for_surface and len(tried) < _DIVISIONS:
             rest = _without_cut_off(tried[-1])
             if rest is None:
@@ -195,7 +195,7 @@ def plan(
 
 @dataclass(frozen=True)
 class _Driven:
-    """A division that was painted and driven, whatever became of the moves between strokes."""
+    """A division with its painting and motion; moves between strokes may be unplanned."""
 
     subject: Subject
     result: Result
@@ -254,7 +254,7 @@ def _answered(
     deadline: Deadline,
     progress: Callable[[str], None] | None = None,
 ) -> AnsweredScene:
-    """What a plan's page tells besides of a built scene, as far as there is time."""
+    """The answers to the questions asked of a built scene, as far as there is time."""
     from cellcolor.pictures.report_page.content import AnsweredScene
     from cellcolor.questions.setting_up import candidates_of, plan_of
 

@@ -1,9 +1,8 @@
 """Programs for controllers: URScript, RAPID and KRL (docs/formats/other-programs.md).
 
-A program is written only for arms whose axes are those that the maker's own joint angles refer to:
-degrees, zero and sense of rotation are compared on the axes in space, not by the arm's name. Each
-program refuses to start unless the arm stands where the motion begins, and ends where a move was
-not planned.
+A program is written only for an arm whose joint angles mean the same as the maker's. This is judged
+by where the axes are in space at zero, not by the arm's name. Each program refuses to start unless
+the arm stands where the motion begins, and ends where a move was not planned.
 """
 
 from __future__ import annotations
@@ -71,7 +70,7 @@ def urscript(planned: PlannedMotion) -> bytes:
     """``servoj`` at a fixed time step, rad, for arms of Universal Robots.
 
     Raises:
-        NotForThisArm: the arm is none, or its joints are not counted as the controller does.
+        NotForThisArm: it is no such arm, or its joint angles are not the controller's.
     """
     _check_ur(planned.axes)
     step = planned.step_s or UR_STEP
@@ -210,7 +209,7 @@ def krl(planned: PlannedMotion) -> bytes:
                 lines.append(f"  ; contact {'begins' if own.contact[kept[place]] else 'ends'}")
             seconds = times[place] - times[place - 1]
             share = np.abs(degrees[place] - degrees[place - 1]) / seconds / KR6_SPEEDS
-            # Rounded up the arm would be faster than planned, so down, but never to a standstill.
+            # Rounded down: the arm must not be faster than planned. At least 1, or it stands still.
             wanted = int(np.clip(np.floor(100 * share.max()), 1, 100))
             if wanted != percent:
                 lines.append(f"  speed_of_axes({wanted})")
@@ -242,7 +241,7 @@ def _points_of(planned: PlannedMotion, own: Samples) -> Index:
 
 
 def _check(axes: ArmAxes | None, wanted: Axes, name: str) -> None:
-    """Hold an arm's axes to a maker's, which count zero and sense of rotation alike then."""
+    """Refuse an arm unless its axes are the maker's: then zero and sense of rotation agree too."""
     axes = _six_turning(axes)
     for number in range(6):
         point, direction = map(np.array, wanted[number])

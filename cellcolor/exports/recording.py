@@ -120,7 +120,7 @@ uint8[] data"""
     + _HEADER
 )
 _LINE_STRIP, _TRIANGLES = 4, 11
-_WORLD = "world"  # the frame of all
+_WORLD = "world"  # the frame that everything is in
 
 Field: TypeAlias = "str | NDArray[Any] | np.number[Any]"
 _ZERO, _NO = np.uint32(0), np.uint8(0)
@@ -158,7 +158,7 @@ def recording(planned: PlannedMotion) -> bytes:
     for own in stretches(planned.trajectory, planned.step_s or _STEP):
         begun = planned.trajectory.times[own.first] - planned.trajectory.times[0]
         moments = np.round((own.times + begun) * 1e9).astype(np.int64).tolist()
-        x = np.zeros_like(own.normals)
+        x = np.zeros_like(own.normals)  # across the normal, from the axis that is least along it
         x[np.arange(len(x)), np.argmin(np.abs(own.normals), axis=1)] = 1
         x -= np.sum(x * own.normals, axis=1, keepdims=True) * own.normals
         tips = quaternions(unit(x), own.normals)
@@ -181,7 +181,7 @@ def recording(planned: PlannedMotion) -> bytes:
 def _cdr(*fields: Field) -> bytes:
     """A message's fields in their order, as ROS 2 sends them (OMG CDR, little-endian).
 
-    Numbers begin at a multiple of their own size. A sequence is two fields, how many and what.
+    Each number begins at a multiple of its size. A sequence is two fields: its length, its items.
     """
     message, head = bytearray(), b"\x00\x01\x00\x00"
     for field in fields:
@@ -230,6 +230,6 @@ def _marker(
     shade = np.array([0.1, 0.1, 0.1, 1.0], dtype=np.float32)
     what = np.array([number, kind, 0], dtype=np.int32)  # 0: is to be shown
     drawn: list[Field] = [np.uint32(len(points)), points, np.uint32(len(colors)), colors]
-    texture: list[Field] = ["", never, "", "", _ZERO, _ZERO]  # none, nor places on it
-    others: list[Field] = ["", "", _ZERO, "", _NO]  # neither text nor mesh
+    texture: list[Field] = ["", never, "", "", _ZERO, _ZERO]  # no texture
+    others: list[Field] = ["", "", _ZERO, "", _NO]  # no text, no mesh
     return [never, _WORLD, space, what, *posed, shade, never, _NO, *drawn, *texture, *others]

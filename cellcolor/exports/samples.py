@@ -23,7 +23,7 @@ class Samples:
         points, normals: (k, 3) the tip in the world, m, and the outward normal.
         contact: (k,) whether the tool is on the surface.
         segment: (k,) the segment, -1 between them.
-        beside: the most that a joint is beside the judged motion, rad or m.
+        beside: how far a joint is from the judged motion at most, rad or m.
     """
 
     first: int
@@ -41,10 +41,10 @@ class Samples:
 def stretches(trajectory: Trajectory, step_s: float | None = None) -> list[Samples]:
     """The planned stretches: one ends where the move to the next sample was not planned.
 
-    Velocities are those of the parabola through a sample and its two neighbors, and so are
-    accelerations by velocities; at both ends they are zero. With a time step joints follow the
-    cubic through both samples around with their velocities (Hermite), and all else is between them
-    in proportion to time. The last sample comes once its time is over, up to a step late.
+    The velocity at a sample is that of the parabola through it and its two neighbors;
+    accelerations come from velocities in the same way. Both are zero at the ends. With a time step,
+    joints follow the cubic Hermite curve through the samples and their velocities, and all else is
+    interpolated linearly. The last moment is the first that is not before the last sample.
 
     Raises:
         InputError: two samples have the same nanosecond, or the later one comes first.
@@ -100,7 +100,7 @@ def _stretch(trajectory: Trajectory, first: int, last: int, step_s: float | None
 
 
 def slopes(times: Array, values: Array) -> Array:
-    """(k, m) by time, zero at both ends."""
+    """The derivatives of values (k, m) by time, zero at both ends."""
     found = np.zeros_like(values)
     if len(times) > 2:
         found[1:-1] = np.gradient(values, times, axis=0)[1:-1]
@@ -108,7 +108,7 @@ def slopes(times: Array, values: Array) -> Array:
 
 
 def via_points(samples: Samples, within: float) -> Index:
-    """Few samples, between which joints in proportion to time stay within so much of the others.
+    """Few samples such that linear interpolation between them stays this near to all the others.
 
     The first and the last sample in contact of each stroke are among them.
     """
@@ -117,7 +117,7 @@ def via_points(samples: Samples, within: float) -> Index:
     found = [0]
     for begin, end in pairwise(kept):
         while begin < end:
-            # The farthest sample whose straight way stays near, by doubling and halving.
+            # Find the farthest sample that a straight way reaches, by doubling and halving.
             good, reach = begin + 1, 2
             while begin + reach <= end and _straight(samples, begin, begin + reach, within):
                 good, reach = begin + reach, 2 * reach

@@ -1,4 +1,4 @@
-"""A part with the places marked that are wrong with it."""
+"""A picture of a part on which its faults are marked."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from cellcolor.frontend.parts.inspection import Inspection
 from cellcolor.pictures.palette import FAINT
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
 
-_MOST = 60_000  # faces that are drawn; of a part with more, this many, evenly chosen
-_MOST_MARKS = 20_000  # of one kind
+_MOST = 60_000  # faces drawn; a larger part is thinned evenly to this many
+_MOST_MARKS = 20_000  # of one kind of fault
 _FILLS = ("#EE6677", "#AA3377", "#4477AA", "#228833", "#CCBB44")  # of faulty faces
 _LINES = ("#D55E00", "#CC0000")  # holes, edges with more than two faces
 _SHARP = "#555555"
-_WIDTH = 60  # characters of a note, which has no more room beside the picture
+_WIDTH = 60  # characters a line of a note, all that fits beside the picture
 
 
 def faulty_part(inspection: Inspection) -> Picture3D:

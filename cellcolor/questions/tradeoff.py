@@ -2,9 +2,9 @@
 
 Every segment lies in one color region, so k segments cover at most what the best k color regions
 cover together: a maximum-coverage problem. If the cells that these regions cover, and no others,
-are solved with k segments, that is the most for any division of the surface. Where regions are in
-each other's way it is not, and a CP-SAT model in which cells may be left out settles it for the
-search space ``paper``.
+can be covered with k segments, this is the most for any division of the surface. Regions may be in
+each other's way. Then a CP-SAT model in which cells may be left out finds the most in the search
+space ``paper``.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
 _FEW_CHOICES = 2000
 """The most choices of color regions that are tried one by one."""
 _WHOLE = 2**40
-"""What all cells weigh together as integers, for CP-SAT: a share is told to 1e-12."""
+"""The integer weight of all cells together, for CP-SAT: a share is exact to about 1e-12."""
 
 
 def front_of(
@@ -128,7 +128,7 @@ def few_that_cover(
 
 
 class _Asked:
-    """A graph, with what its cells weigh."""
+    """The question about one graph: what its cells weigh, and which are required."""
 
     def __init__(
         self,
@@ -208,7 +208,7 @@ def _most_covered(
         What they cover, all of it, and the weight that no choice exceeds; None if so few regions
         do not cover what is required.
     """
-    segments = min(segments, len(regions))  # where regions cut each other apart
+    segments = min(segments, len(regions))  # one region may need several
     if comb(len(regions), segments) <= _FEW_CHOICES:  # a model takes longer to build than these
         covers = np.zeros((len(regions), len(weights)), dtype=bool)
         for number, (_, cells) in enumerate(regions):
@@ -237,7 +237,7 @@ def _most_covered(
         gains.append(weights[cell] * covered)
     model.maximize(sum(gains))
     solver = make_cp_solver(deadline, 1, 0)
-    # As with covers, the linear relaxation is what bounds it.
+    # As for set covers, the bound comes from the linear relaxation.
     solver.parameters.linearization_level = 2
     status, interrupt = solve_interruptibly(solver, model)
     if interrupt is not None:

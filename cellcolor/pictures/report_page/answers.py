@@ -1,4 +1,4 @@
-"""What was asked besides: cards on lift-offs against area, on what costs one, on where to stand."""
+"""Cards for the further questions of a plan: area, what costs a lift-off, places, set-ups."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def answer_card(answer: Answers) -> Card:
 
 
 def _front_card(front: Front) -> Card:
-    """Each point a row, which shows on the part what it covers."""
+    """A row for each point of the front; a click on it shows on the part what it covers."""
     text = (
         "The most that each number of lift-offs can cover, of the area with a color. A click on a "
         "row or on a point shows it on the part."
@@ -40,7 +40,7 @@ def _front_card(front: Front) -> Card:
 
 
 def _explanation_card(found: Explanation) -> Card:
-    """What changes the number or the area, the best first."""
+    """A row for each relaxation that changes the lift-offs or the area, the best first."""
     base = found.base
     rows = [("without, or with less asked for", "lift-offs", "area")]
     rows += [

@@ -284,7 +284,7 @@ def _places(
 
 
 def _eye(surface: LabelledSurface) -> Array:
-    """A unit vector from the scene to the eye, from where the arm stands beside the part.
+    """A unit vector from the scene to the eye, so that arm and part are seen side by side.
 
     Of 24 directions around the vertical at two heights, this is the one that sees most of the
     part's outside. Directions in which the arm hides the part, or the part the arm, lose points.
