@@ -5,8 +5,8 @@ segments take one with the fewest sub-cells, and a spanning tree of each segment
 the trees fall into pieces. A sub-cell of a hub with k counted darts puts k pieces together, and so
 saves k - 1 segments: it has k - 1 links, between each of its darts and the next. So there are as
 many segments as pieces, less the links of all hubs, or more. Each edge of a hub is counted once at
-most if it has one color, or leads to a cell with no other live dart (docs/bounds.md, "Crossing an
-edge twice"). Sub-cells have one color each and do not cross, which limits the links.
+most if it has one color, or leads to a cell with no other live dart (docs/bounds/crossings.md).
+Sub-cells have one color each and do not cross, which limits the links.
 
 The most links in a cell with several loops, by counting faces.
 
@@ -15,7 +15,7 @@ dart. By Euler's formula, for each part of that plane graph, there are as many l
 walks round its faces together, less two for each part. A walk passes corners between a dart of a
 loop and the next. After a corner from color a to color b comes one from b, so that two corners of a
 walk are opposite ones, and a walk of three and more is needed wherever loops are to be connected
-that have no opposite corners (docs/bounds.md, "Hubs with several loops").
+that have no opposite corners (docs/bounds/hubs.md, "Hubs with several loops").
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Segments that cannot all be drawn: verified by equations modulo 2.
 
-The proof is in docs/bounds.md, "The certificate of a tangle". An area is a set of cells that the
-segment's color connects; a segment touches it where it touches one of its cells. From there a curve
-leads on within the area to its first cell. Where the area lies outside of the domain of another
-segment, that one does not meet the rest of this curve.
+The proof is in docs/bounds/tangles.md, "The certificate of a tangle". An area is a set of cells
+that the segment's color connects; a segment touches it where it touches one of its cells. From
+there a curve leads on within the area to its first cell. Where the area lies outside of the domain
+of another segment, that one does not meet the rest of this curve.
 """
 
 from __future__ import annotations

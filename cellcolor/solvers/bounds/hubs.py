@@ -182,7 +182,7 @@ def _links_by_faces(loops: Sequence[Sequence[int]]) -> int:
 
     Drawn as points, with lines for darts, loops and groups make a plane graph, of so many parts. By
     Euler's formula it has links = loops + walks round faces - 2 * parts. How many walks there can
-    be is told by the corners that they pass (docs/bounds.md, "Hubs with several loops").
+    be is told by the corners that they pass (docs/bounds/hubs.md, "Hubs with several loops").
     """
     corners = Counter(
         (loop[place - 1], color) for loop in loops for place, color in enumerate(loop)

@@ -76,7 +76,7 @@ def enough_crossings(instance: Instance, colors: Sequence[frozenset[int]]) -> di
 
     An edge with a single joinable color is crossed at most once. If it is crossed m > 1 times, then
     on either side m different sub-cells cross some other edge of their cell, too: m is at most the
-    sum of the crossings of the cell's other edges (docs/bounds.md, "Crossing an edge twice"). This
+    sum of the crossings of the cell's other edges (docs/bounds/crossings.md). This
     is applied until nothing changes. It says nothing about a side whose cell has several live
     loops, nor about edges with the same cell on both sides.
 

@@ -249,7 +249,7 @@ def strands_in_turn(
     """The lower strands of an edge are joined first, successive ones in different colors.
 
     It does not matter which strands the corridors take. Why their colors differ is explained in
-    docs/bounds.md, "Crossing an edge twice".
+    docs/bounds/crossings.md.
     """
     seams = {seam.id for seam in graph.seams}
     for edge in graph.edges:
