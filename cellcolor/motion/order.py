@@ -52,7 +52,18 @@ def ordered(
         to_home = _seconds(space.step(ends, home), velocities)
 
     def best_of(order: Sequence[int]) -> tuple[float, list[int]]:
-        return _best(order, rows, between, from_home, to_home)
+        """The time of the quickest choice of a way for each stroke of an order, and the ways."""
+        total, came = from_home[rows[order[0]]], []
+        for before, after in pairwise(order):
+            whole = total[:, None] + between[np.ix_(rows[before], rows[after])]
+            came.append(whole.argmin(axis=0))
+            total = whole.min(axis=0)
+        total = total + to_home[rows[order[-1]]]
+        at = [int(total.argmin())]
+        for back in reversed(came):
+            at.append(int(back[at[-1]]))
+        chosen = [int(rows[stroke][way]) for stroke, way in zip(order, reversed(at), strict=True)]
+        return float(total.min()), chosen
 
     if len(strokes) <= _ALL_ORDERS:
         every = [list(order) for order in permutations(range(len(strokes)))]
@@ -77,23 +88,6 @@ def _ways(stroke: Stroke, space: JointSpace) -> list[Stroke]:
 def _seconds(way: Array, velocities: Array) -> Array:
     """How long the slowest joint takes at least, whatever whole turns are chosen, s."""
     return np.asarray((np.abs(way) / velocities).max(axis=-1))
-
-
-def _best(
-    order: Sequence[int], rows: Sequence[Index], between: Array, from_home: Array, to_home: Array
-) -> tuple[float, list[int]]:
-    """The quickest choice of a way for each stroke of an order."""
-    total, came = from_home[rows[order[0]]], []
-    for before, after in pairwise(order):
-        whole = total[:, None] + between[np.ix_(rows[before], rows[after])]
-        came.append(whole.argmin(axis=0))
-        total = whole.min(axis=0)
-    total = total + to_home[rows[order[-1]]]
-    at = [int(total.argmin())]
-    for back in reversed(came):
-        at.append(int(back[at[-1]]))
-    chosen = [int(rows[stroke][way]) for stroke, way in zip(order, reversed(at), strict=True)]
-    return float(total.min()), chosen
 
 
 def _nearest_next(rows: Sequence[Index], between: Array, from_home: Array) -> list[int]:

@@ -14,7 +14,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
-from cellcolor.motion.courses import Course, Courses, laid_out
+from cellcolor.motion.courses import Courses, laid_out
 from cellcolor.motion.following import joint_space
 from cellcolor.motion.refusing import ArmRefusals
 from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
@@ -145,15 +145,16 @@ def strokes_of(ground: Ground, segment: int, branch: int) -> SegmentStrokes:
         walls = walls_of(parts, small.whole, space, ground.deadline)
         refusals.keep_inside(parts.part_of, walls.turns)
     parted = len(strokes)
-    name = prepared.robot.joint_names[walls.joint]
     for _ in range(_ROUNDS):
         courses = courses_with(refusals, walls.edges)
         strokes = _on(ground, courses, branch)
         if not _refuse_what_is_beyond(courses, strokes, space, refusals):
             break
     if not walls.whole:
-        full = [replace(one, parting=_full(one, name)) for one in strokes[parted:]]
-        strokes = strokes[:parted] + full
+        text = f"{prepared.robot.joint_names[walls.joint]} cannot follow the whole segment"
+        for at in range(parted, len(strokes)):
+            parting = Parting.at("winding", text, strokes[at].points[0])
+            strokes[at] = replace(strokes[at], parting=parting)
     cut = [
         part
         for stroke in strokes
@@ -191,7 +192,9 @@ def _on(ground: Ground, courses: Courses, branch: int) -> list[Stroke]:
         segment = course.path.segment
         parts = trimmed(segment, branch, course.samples, course.followed, spacing, names, space)
         if parts and found:
-            parts[0] = replace(parts[0], parting=_apart(course))
+            text = "places that no sample may touch divide the segment"
+            parting = Parting.at("trimmed", text, course.path.points[0])
+            parts[0] = replace(parts[0], parting=parting)
         found += parts
     return _worth_a_lift_off(found, spacing)
 
@@ -218,13 +221,3 @@ def _worth_a_lift_off(strokes: list[Stroke], spacing: float) -> list[Stroke]:
         strokes[at] if number else replace(strokes[at], parting=None)
         for number, at in enumerate(sorted(kept))
     ]
-
-
-def _apart(course: Course) -> Parting:
-    x, y, z = course.path.points[0].tolist()
-    return Parting("trimmed", "places that no sample may touch divide the segment", (x, y, z))
-
-
-def _full(stroke: Stroke, joint: str) -> Parting:
-    x, y, z = stroke.points[0].tolist()
-    return Parting("winding", f"{joint} cannot follow the whole segment", (x, y, z))

@@ -29,6 +29,12 @@ class Parting:
     text: str
     place: tuple[float, float, float]
 
+    @classmethod
+    def at(cls, reason: str, text: str, point: Array) -> Parting:
+        """One at a point (3,)."""
+        x, y, z = point.tolist()
+        return cls(reason, text, (x, y, z))
+
 
 @dataclass(frozen=True)
 class Stroke:
@@ -65,27 +71,22 @@ class Stroke:
         turned = np.abs(off - space.period * space.periods(off)).max()
         return apart < _SAME and bool(turned < _SAME / 1e-3)
 
+    def _taken(self, rows: slice | Index) -> Stroke:
+        points, normals, joints = self.points[rows], self.normals[rows], self.joints[rows]
+        return replace(self, points=points, normals=normals, joints=joints)
+
     def part(self, first: int, end: int) -> Stroke:
         """The samples from the first one to the one before the end."""
-        rows = slice(first, end)
-        return replace(
-            self, points=self.points[rows], normals=self.normals[rows], joints=self.joints[rows]
-        )
+        return self._taken(slice(first, end))
 
     def reversed(self) -> Stroke:
         """The same stroke in reverse."""
-        return replace(
-            self, points=self.points[::-1], normals=self.normals[::-1], joints=self.joints[::-1]
-        )
+        return self._taken(slice(None, None, -1))
 
     def followed_by(self, rows: slice) -> Stroke:
         """The stroke, and then some of its samples once more."""
-        return replace(
-            self,
-            points=np.concatenate([self.points, self.points[rows]]),
-            normals=np.concatenate([self.normals, self.normals[rows]]),
-            joints=np.concatenate([self.joints, self.joints[rows]]),
-        )
+        own = np.arange(len(self))
+        return self._taken(np.concatenate([own, own[rows]]))
 
     def begun_at(self, sample: int, space: JointSpace) -> Stroke:
         """A closed stroke that begins and ends at another of its samples."""
@@ -93,12 +94,9 @@ class Stroke:
             return self
         # What is passed after the old end goes on from there, by whole turns farther if it winds.
         wound = space.period * space.periods(self.joints[-1] - self.joints[0])
-        return replace(
-            self,
-            points=np.concatenate([self.points[sample:], self.points[1 : sample + 1]]),
-            normals=np.concatenate([self.normals[sample:], self.normals[1 : sample + 1]]),
-            joints=np.concatenate([self.joints[sample:], self.joints[1 : sample + 1] + wound]),
-        )
+        begun = self._taken(np.r_[sample : len(self), 1 : sample + 1])
+        begun.joints[len(self) - sample :] += wound
+        return begun
 
     def turned(self, turns: Index, space: JointSpace) -> Stroke:
         """The stroke with every joint (joints,) turned by a number of periods."""
@@ -140,9 +138,8 @@ def trimmed(
             cause = (
                 "the branch jumps" if good[at] else f"samples fail: {names[followed.reasons[at]]}"
             )
-            x, y, z = samples.points[at].tolist()
-            parting = Parting("trimmed", f"the path was cut where {cause}", (x, y, z))
-            stroke = replace(stroke, parting=parting)
+            text = f"the path was cut where {cause}"
+            stroke = replace(stroke, parting=Parting.at("trimmed", text, samples.points[at]))
         found.append(stroke)
     return found
 
@@ -181,5 +178,5 @@ def _full(
     """Why a stroke was cut at a sample that the part before it still has."""
     joints = np.concatenate([before.joints, stroke.joints[sample : sample + 2]])
     joint = next((number for number, own in enumerate(space.turns(joints)) if not len(own)), 0)
-    x, y, z = stroke.points[sample].tolist()
-    return Parting("winding", f"{names[joint]} would run out of its limits", (x, y, z))
+    text = f"{names[joint]} would run out of its limits"
+    return Parting.at("winding", text, stroke.points[sample])
