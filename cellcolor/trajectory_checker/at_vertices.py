@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -200,16 +200,8 @@ def touches(built: BuildResult, path: ContactPath, deadline: Deadline = NEVER) -
 
 
 def _part(found: AtVertices, rows: Mask) -> AtVertices:
-    return AtVertices(
-        built=found.built,
-        vertex=found.vertex[rows],
-        color=found.color[rows],
-        off=found.off[rows],
-        tilt=found.tilt[rows],
-        turned=found.turned[rows],
-        branch=found.branch[rows],
-        apart=found.apart[rows],
-    )
+    _, *of_rows = (getattr(found, field.name) for field in fields(found))
+    return AtVertices(found.built, *(values[rows] for values in of_rows))
 
 
 def _check_width(robot: Robot, joints: Array) -> None:

@@ -166,38 +166,33 @@ def _check_arm(prepared: PreparedScene, trajectory: Trajectory) -> None:
 
 
 def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> JointLimits:
-    robot, setup = prepared.robot, prepared.setup
+    robot, setup, motion = prepared.robot, prepared.setup, prepared.setup.motion
     lower: Array | None = robot.lower
     upper: Array | None = robot.upper
     if not setup.constraints.collision:
         lower = upper = None
         notes.append("The setup leaves out collisions and joint limits.")
-    velocity = robot.velocity
+    velocity, tool_speed, touch_speed = robot.velocity, np.inf, np.inf
     acceleration: Array | None = None
     jerk: Array | None = None
-    tool_speed, touch_speed = np.inf, np.inf
     if not timed:
         notes.append("There are no times, so velocities and accelerations are not judged.")
-    elif setup.motion is None:
+    elif motion is None:
         notes.append("The setup has no [motion], so accelerations are not judged.")
-    if setup.motion is not None:
-        tool_speed = setup.motion.speed_m_per_s
-        touch_speed = setup.motion.approach_speed_m_per_s or np.inf
-        lowered = setup.motion.joint_velocities_rad_per_s
-        acceleration = np.array(setup.motion.joint_accelerations_rad_per_s2)
-        if setup.motion.joint_jerks_rad_per_s3 is not None and timed:
-            jerk = np.array(setup.motion.joint_jerks_rad_per_s3)
-        for key, given in (
-            ("joint_velocities_rad_per_s", lowered),
-            ("joint_accelerations_rad_per_s2", acceleration),
-            ("joint_jerks_rad_per_s3", setup.motion.joint_jerks_rad_per_s3),
-        ):
+    if motion is not None:
+        tool_speed = motion.speed_m_per_s
+        touch_speed = motion.approach_speed_m_per_s or np.inf
+        for key in ("velocities_rad_per_s", "accelerations_rad_per_s2", "jerks_rad_per_s3"):
+            given = getattr(motion, f"joint_{key}")
             if given is not None and len(given) != robot.joints:
                 message = f"needs {robot.joints} numbers, has {len(given)}"
                 file = None if setup.file is None else str(setup.file)
-                raise InputError(file, f"motion.{key}", message)
-        if lowered is not None:
-            velocity = np.fmin(velocity, lowered)
+                raise InputError(file, f"motion.joint_{key}", message)
+        acceleration = np.array(motion.joint_accelerations_rad_per_s2)
+        if motion.joint_jerks_rad_per_s3 is not None:
+            jerk = np.array(motion.joint_jerks_rad_per_s3)
+        if motion.joint_velocities_rad_per_s is not None:
+            velocity = np.fmin(velocity, motion.joint_velocities_rad_per_s)
     if timed and np.isnan(velocity).any():
         names = [robot.joint_names[joint] for joint in np.flatnonzero(np.isnan(velocity))]
         notes.append(f"Without a limit, so velocities are not judged: {', '.join(names)}.")
