@@ -85,10 +85,15 @@ class Objective(Value):
         return segments + area + extra * set_ups
 
     def __str__(self) -> str:
-        if self.is_default:
-            return "each segment costs 1"
-        costs = ", ".join(f"{name}: {cost}" for name, cost in self.segments.items())
-        return f"what segments cost by color, others 1: {costs}"
+        said = []
+        if "segments" in self.asked:
+            costs = ", ".join(f"{name}: {cost}" for name, cost in self.segments.items())
+            said.append(f"what segments cost by color, others 1: {costs}")
+        if self.uncovered_price is not None:
+            said.append(f"what is uncovered costs {self.uncovered_price:g} segments if it is all")
+        if self.change_over is not None:
+            said.append(f"a change-over costs {self.change_over:g} lift-offs")
+        return "; ".join(said) or "each segment costs 1"
 
 
 FEWEST_SEGMENTS = Objective()

@@ -349,3 +349,13 @@ def test_a_start_is_kept_where_it_is_cheaper() -> None:
         begin = Start(start.cells or (), ())
         found = solve(TWO, Options(objective=Objective(costs), start=begin))
         assert found.cells == start.cells
+
+
+def test_an_objective_in_words() -> None:
+    """Whatever is asked for is said, and nothing else."""
+    assert str(Objective()) == str(Objective({"red": 1})) == "each segment costs 1"
+    assert str(Objective({"red": 3})) == "what segments cost by color, others 1: red: 3"
+    price = str(Objective(uncovered_price=20.0))
+    assert "20 segments" in price and "color" not in price
+    both = str(Objective({"red": 3}, change_over=2.0))
+    assert "red: 3" in both and "2 lift-offs" in both

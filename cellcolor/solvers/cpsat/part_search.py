@@ -112,9 +112,9 @@ class PartSearch(PartState):
             self._exact = found.segments
             if self._exact > self.bound + LITTLE:
                 self.count_few_links(deadline)
-                self.believe_exact(deadline)
+                self.accept_exact(deadline)
 
-    def believe_exact(self, _deadline: Deadline) -> None:
+    def accept_exact(self, _deadline: Deadline) -> None:
         """Take the minimum that ``solve_exactly`` found as the bound; it has no certificate."""
         self.raise_to(self._exact, for_surface=False)
 
@@ -136,14 +136,14 @@ class PartSearch(PartState):
         """A few moves from the cells painted whole, as the cover has them."""
         self.recolor(*self._whole, seed, deadline, FEW_MOVES, whole_first=True)
 
-    def avoid(self, deadline: Deadline) -> None:
+    def plan_in_detail(self, deadline: Deadline) -> None:
         """Plans that say what segments avoid, too; on a small part they are decided one by one."""
         if self.large:
             self.planning.avoid(deadline)
         else:
             self.planning.decide(self.models.draw, deadline)
 
-    def settle(self, deadline: Deadline) -> None:
+    def decide_plans(self, deadline: Deadline) -> None:
         """Plans of a small part, with more and more effort."""
         for _ in range(0 if self.large else EFFORTS):
             if not self.done and self.planning.effort < MOST_EFFORT:
@@ -175,9 +175,9 @@ class PartSearch(PartState):
         self.begin_again(seed, deadline.share(SHARE_OF_ROUTES))
         self.recolor(*self.best, seed, deadline.share(SHARE_OF_ROUTES), MOVES)
         if not self.done:
-            self.insist(deadline.share(SHARE_OF_PLANS))
+            self.plan_harder(deadline.share(SHARE_OF_PLANS))
 
-    def insist(self, deadline: Deadline) -> None:
+    def plan_harder(self, deadline: Deadline) -> None:
         """Plans with more effort, until their share of the time is over."""
         try:
             if self.large:

@@ -176,7 +176,10 @@ class _Search:
         self._fewest.run(*self._put_together())
 
     def _stages(self) -> list[_Stage]:
-        """The stages in order; each is done for all open parts before the next begins."""
+        """The stages in order, steps 3 to 11 of docs/solver.md.
+
+        Each is done for all open parts before the next begins.
+        """
         if not self._plans:
             return [PartSearch.cover, lambda part, deadline: part.models.solve(deadline)]
 
@@ -190,13 +193,13 @@ class _Search:
             within(1 / 4, PartSearch.begin_large),
             lambda part, its: part.planning.route(its.share(1 / 4 if part.large else 1 / 2)),
             within(1 / 4, PartSearch.count_few_links),
-            PartSearch.believe_exact,
+            PartSearch.accept_exact,
             within(1 / 4, PartSearch.recolor_best),
             within(1 / 2, lambda part, its: part.planning.go_on(its)),
-            within(1 / 3, PartSearch.avoid),
+            within(1 / 3, PartSearch.plan_in_detail),
             within(3 / 4, PartSearch.narrow_gap),
-            within(3 / 4, PartSearch.settle),
-            within(1 / 3, PartSearch.insist),
+            within(3 / 4, PartSearch.decide_plans),
+            within(1 / 3, PartSearch.plan_harder),
             lambda part, its: part.models.solve(its),
             PartSearch.improve_on,
         ]

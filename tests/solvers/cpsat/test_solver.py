@@ -178,13 +178,13 @@ def test_what_segments_avoid_proves_the_last_one() -> None:
     search = _routed_rim()
     search.recolor_best(NEVER)
     assert (search.segments, search.surface_bound) == (7, 6)
-    search.insist(NEVER)
+    search.plan_harder(NEVER)
     assert search.surface_bound == 7
 
 
 def test_a_turn_of_plans_ends_with_its_share_of_the_time() -> None:
     search = _routed_rim()
-    search.insist(Deadline.after(0))
+    search.plan_harder(Deadline.after(0))
     assert not search.done
 
 
