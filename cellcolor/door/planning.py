@@ -25,6 +25,7 @@ from cellcolor.questions.places import Place
 from cellcolor.solvers.interface import Options
 
 if TYPE_CHECKING:
+    from cellcolor.data.trajectory_verdict import TrajectoryVerdict
     from cellcolor.frontend import Scene
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.frontend.stage_clock import StageClock
@@ -93,104 +94,147 @@ def plan(
     from cellcolor.frontend.stage_clock import StageClock
     from cellcolor.motion.home import home_of
     from cellcolor.motion.limits import motion_of
-    from cellcolor.motion.plan import plan_motion
-    from cellcolor.motion.scene_painting import paint_scene
-    from cellcolor.trajectory_checker.check import check_trajectory
 
     clock = StageClock(deadline, progress)
     given = Scene.read(given_or_file) if isinstance(given_or_file, Path) else given_or_file
-    path = given.file
     with clock.timed("preparation"):
         prepared = prepare(_with_motion(given, motion), deadline)
         # What is wrong with the motion is refused before the long work begins.
         home_of(prepared, motion_of(prepared))
     with clock.timed("colors"):
-        subject = _built(prepared, path, StageClock(deadline, progress))
-    so_far, whole = UnfinishedPlan(subject, None, None, None, ()), subject
-
-    def has(**more: Any) -> None:
-        nonlocal so_far
-        so_far = replace(so_far, **more)
-
+        whole = _built(prepared, given.file, StageClock(deadline, progress))
+    run = _Run(whole, pattern or DEFAULT_PATTERN, clock, progress)
     try:
-        with clock.timed("fewest segments"):
-            subject, notes, share = rest_of(subject, wanted, Options(deadline=deadline))
-            has(subject=subject)
-            result = solve(subject, time_limit=deadline.share(_FOR_SOLVING))
-            result = _with_notes(result, notes, share)
-            has(result=result)
-            if result.solution.cells is None:
-                raise OutOfTime("the time limit came before any division was found")
-
-        def driven(subject: Subject, result: Result) -> _Driven:
-            with clock.timed("painting"):
-                painting = paint_scene(
-                    subject.build(),
-                    subject.decomposition,
-                    result.solution,
-                    deadline=deadline,
-                    progress=progress,
-                )
-            if len(painting.painted.minima) > 1:  # the surface was refined and solved again
-                subject = Subject(path, painting.built, painting.built.surface)
-                result = _with_notes(Result(painting.solution, subject), notes, share)
-            has(subject=subject, result=result, painted=painting.painted)
-            with clock.timed("motion"):
-                planned = plan_motion(
-                    painting.built,
-                    painting.painted,
-                    painting.normals,
-                    pattern=pattern or DEFAULT_PATTERN,
-                    deadline=deadline,
-                    progress=progress,
-                    on_paths=lambda paths, measures: has(paths=paths, measures=measures),
-                )
-            return _Driven(subject, result, painting, planned)
-
-        tried = [driven(subject, result)]
-        least = tried[0].result.solution  # with all colors: no other division may need more
-        while least.proved_for_surface and len(tried) < _DIVISIONS:
-            rest = _without_cut_off(tried[-1])
-            if rest is None:
-                break
-            try:
-                with clock.timed("fewest segments"):
-                    again = solve(rest, time_limit=deadline.share(_FOR_SOLVING))
-                if again.solution.lift_offs != least.lift_offs:
-                    break
-                about = _cut_off_in_words(tried[-1])
-                tried.append(driven(rest, _with_notes(again, (*notes, about), share)))
-            except OutOfTime:
-                break
-        best = min(tried, key=lambda one: len(one.planned.trajectory.unplanned))
-        subject, result, painting, planned = best.subject, best.result, best.painting, best.planned
-        built = painting.built
-        solution = result.solution
-        with clock.timed("judging"):
-            verdict = check_trajectory(
-                built,
-                planned.trajectory,
-                minimum_lift_offs=solution.lift_offs if solution.proved_for_surface else None,
-                deadline=deadline,
-                progress=progress,
-            )
+        best = run.best_of(*run.divided(wanted))
+        verdict = run.judged(best)
     except OutOfTime as error:
-        raise PlanOutOfTime(so_far) from error
+        raise PlanOutOfTime(run.so_far) from error
     answered = None
     if ask:
         with clock.timed("questions"):
             answered = _answered(ask, whole, deadline, progress)
     return PlannedScene(
-        subject,
-        result,
-        painting.painted,
-        planned.paths,
-        planned.measures,
-        planned.trajectory,
+        best.subject,
+        best.result,
+        best.painting.painted,
+        best.planned.paths,
+        best.planned.measures,
+        best.planned.trajectory,
         verdict,
         clock.seconds,
         answered,
     )
+
+
+class _Run:
+    """One call of :func:`plan`, from the built scene to the verdict.
+
+    Attributes:
+        so_far: what is ready, in case the time limit comes.
+    """
+
+    def __init__(
+        self,
+        whole: Subject,
+        pattern: str,
+        clock: StageClock,
+        progress: Callable[[str], None] | None,
+    ) -> None:
+        self.so_far = UnfinishedPlan(whole, None, None, None, ())
+        self._pattern, self._clock, self._progress = pattern, clock, progress
+        self._deadline = clock.deadline
+        # On what is left out on purpose, and the share of the area that is covered then.
+        self._notes: tuple[str, ...] = ()
+        self._share = 1.0
+
+    def divided(self, wanted: Wanted) -> tuple[Subject, Result]:
+        """What has to be covered, and the fewest segments of it."""
+        with self._clock.timed("fewest segments"):
+            options = Options(deadline=self._deadline)
+            subject, self._notes, self._share = rest_of(self.so_far.subject, wanted, options)
+            self._has(subject=subject)
+            result = self._solved(subject)
+            self._has(result=result)
+            if result.solution.cells is None:
+                raise OutOfTime("the time limit came before any division was found")
+        return subject, result
+
+    def best_of(self, subject: Subject, result: Result) -> _Driven:
+        """A division driven; or, where the arm finds no way to some colors, one without these.
+
+        Such a division may have no more lift-offs than are proved with all colors.
+        """
+        tried = [self._driven(subject, result)]
+        least = tried[0].result.solution
+        while least.proved_for_surface and len(tried) < _DIVISIONS:
+            rest = _without_cut_off(tried[-1])
+            if rest is None:
+                break
+            try:
+                with self._clock.timed("fewest segments"):
+                    again = self._solved(rest, _cut_off_in_words(tried[-1]))
+                if again.solution.lift_offs != least.lift_offs:
+                    break
+                tried.append(self._driven(rest, again))
+            except OutOfTime:
+                break
+        return min(tried, key=lambda one: len(one.planned.trajectory.unplanned))
+
+    def judged(self, driven: _Driven) -> TrajectoryVerdict:
+        """What the independent judge says of a motion."""
+        from cellcolor.trajectory_checker.check import check_trajectory
+
+        solution = driven.result.solution
+        with self._clock.timed("judging"):
+            return check_trajectory(
+                driven.painting.built,
+                driven.planned.trajectory,
+                minimum_lift_offs=solution.lift_offs if solution.proved_for_surface else None,
+                deadline=self._deadline,
+                progress=self._progress,
+            )
+
+    def _has(self, **more: Any) -> None:
+        self.so_far = replace(self.so_far, **more)
+
+    def _solved(self, subject: Subject, *about: str) -> Result:
+        """The fewest segments, with notes on what was left out on purpose."""
+        found = solve(subject, time_limit=self._deadline.share(_FOR_SOLVING))
+        return self._with_notes(found, *about)
+
+    def _with_notes(self, result: Result, *about: str) -> Result:
+        notes = (*self._notes, *about, *result.solution.notes)
+        solution = replace(result.solution, notes=notes)
+        return replace(result, solution=solution, covered_share=self._share)
+
+    def _driven(self, subject: Subject, result: Result) -> _Driven:
+        """A division painted and driven."""
+        from cellcolor.motion.plan import plan_motion
+        from cellcolor.motion.scene_painting import paint_scene
+
+        with self._clock.timed("painting"):
+            painting = paint_scene(
+                subject.build(),
+                subject.decomposition,
+                result.solution,
+                deadline=self._deadline,
+                progress=self._progress,
+            )
+        if len(painting.painted.minima) > 1:  # the surface was refined and solved again
+            subject = Subject(subject.path, painting.built, painting.built.surface)
+            result = self._with_notes(Result(painting.solution, subject))
+        self._has(subject=subject, result=result, painted=painting.painted)
+        with self._clock.timed("motion"):
+            planned = plan_motion(
+                painting.built,
+                painting.painted,
+                painting.normals,
+                pattern=self._pattern,
+                deadline=self._deadline,
+                progress=self._progress,
+                on_paths=lambda paths, measures: self._has(paths=paths, measures=measures),
+            )
+        return _Driven(subject, result, painting, planned)
 
 
 @dataclass(frozen=True)
@@ -218,12 +262,6 @@ def _cut_off_in_words(driven: _Driven) -> str:
         f"The arm found no way to what it would do in {listed(names)}, so this division does "
         "without, wherever it can. As many lift-offs are proved with all colors."
     )
-
-
-def _with_notes(result: Result, notes: tuple[str, ...], share: float) -> Result:
-    """The result with notes on what was left out on purpose."""
-    solution = replace(result.solution, notes=(*notes, *result.solution.notes))
-    return replace(result, solution=solution, covered_share=share)
 
 
 def _with_motion(scene: Scene, changes: Mapping[str, Any]) -> Scene:
