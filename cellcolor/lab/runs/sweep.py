@@ -26,7 +26,7 @@ from cellcolor.solvers.registry import solver_version
 
 @dataclass(frozen=True, slots=True)
 class Contestant:
-    """A solver that takes part, by its registered name; it chooses its workers itself if None."""
+    """A solver by its registered name, and its number of workers; None if it chooses itself."""
 
     solver: str
     workers: int | None
@@ -61,9 +61,9 @@ SETS: Mapping[str, Mapping[str, Family]] = {
 
 @dataclass(frozen=True, slots=True)
 class Specimen:
-    """An instance that is made when its turn comes, which may raise a CellcolorError.
+    """An instance that is made when its turn comes; making it may raise a CellcolorError.
 
-    It is from a family with a seed, None for a file; the name is for messages.
+    ``seed`` is None for a file, and ``name`` is for messages.
     """
 
     family: str
@@ -114,7 +114,7 @@ _WARM_UP = Instance("warm-up", ("any",), (Cell(0, (0,), ()),), ())
 
 @dataclass(frozen=True, slots=True)
 class Answered:
-    """What a solver answered; see :class:`Row`."""
+    """What a solver answered; see :class:`~cellcolor.lab.runs.row.Row`."""
 
     status: Status
     segments: int | None = None
