@@ -227,6 +227,12 @@ def test_what_is_known_of_a_freer_scene_changes_nothing_of_what_is_found(
     assert same_answers(found.stages, judged(stricter, clock).stages)
 
 
+@pytest.mark.parametrize(("segments", "said"), [(1, True), (3, False)])
+def test_where_no_lift_off_is_needed_none_is_left_to_save(segments: int, said: bool) -> None:
+    here = RelaxedMinimum((), (), segments, segments, 1.0, 0.9, True)
+    assert ("no lift-off is left to save" in str(Explanation("x", here, ()))) == said
+
+
 def test_a_scene_that_nothing_of_is_reached() -> None:
     """No number of lift-offs is told, and less that reaches nothing saves none."""
     here = RelaxedMinimum((), (), 3, 3, 1.0, 0.9, True)
