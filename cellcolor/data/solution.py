@@ -124,6 +124,14 @@ class InstanceReference(Value):
     of: Literal["graph", "text"] = "graph"
 
 
+@dataclass(frozen=True, slots=True)
+class ModelSize(Value):
+    """How large the complete model is that was solved (docs/formulation.md)."""
+
+    variables: NonNegativeInt
+    constraints: NonNegativeInt
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class Solution(Document):
     """A solver's answer, never stronger than its proof.

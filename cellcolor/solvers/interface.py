@@ -11,7 +11,7 @@ from annotated_types import Ge, Le
 from cellcolor.data.bounds import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
-from cellcolor.data.solution import Division, Seam, SearchSpace
+from cellcolor.data.solution import Division, ModelSize, Seam, SearchSpace
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.validation import settle
@@ -98,16 +98,15 @@ class Answer:
         division: the best division found, None when none was found.
         seams: the seams that its darts refer to.
         bounds: what was proved about the fewest segments and the least cost, and how.
-        cutting_paths_lower_bound: no division in the search space with the fewest segments has
-            fewer cutting paths; None when that was not asked for.
         notes: what was left out and why, a sentence each, such as a model too large to be built.
+        model: how large the full model of the problem is, if one was built and solved.
     """
 
     division: Division | None
     seams: tuple[Seam, ...]
     bounds: tuple[Bound, ...]
-    cutting_paths_lower_bound: int | None = None
     notes: tuple[str, ...] = ()
+    model: ModelSize | None = None
 
     @property
     def lower_bound(self) -> int:

@@ -29,9 +29,9 @@ from cellcolor.errors import InputError
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.checked import enumerate_schemes, solve
-from cellcolor.solvers.cpsat.model.dart_graph import dart_graph
+from cellcolor.solvers.cpsat.dart_graph import dart_graph
 from cellcolor.solvers.cpsat.model.full import full_model, read_painting
-from cellcolor.solvers.cpsat.model.painting import counted
+from cellcolor.solvers.cpsat.painting import counted
 from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.routes.segment_plans import Planner
 from cellcolor.solvers.interface import Options, Start

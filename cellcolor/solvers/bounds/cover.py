@@ -103,6 +103,12 @@ def set_cover(
     return Cover([regions[number] for number in sorted(numbers)], max(found.bound, bool(regions)))
 
 
+def smallest_cover(regions: Sequence[Region], cells: int) -> int:
+    """What is proved of the fewest regions that together touch cells 0, 1, 2, …"""
+    touching = _touching(regions, cells)
+    return _smallest(touching, EFFORT, NEVER, _greedy(regions, touching)).bound
+
+
 def _prices(regions: Sequence[Region], costs: Sequence[int] | None) -> list[int] | None:
     """What a segment in each color region costs; None for 1 each."""
     return None if costs is None else [costs[color] for color, _ in regions]

@@ -1,5 +1,6 @@
 """Minimum-segment coloring as a CP-SAT model, sub-cell cutting paths included."""
 
-from cellcolor.solvers.cpsat.solver import CpSatSolver, model_alone
+from cellcolor.solvers.cpsat.complete_model import CompleteModel, CompleteModelSolver
+from cellcolor.solvers.cpsat.solver import CpSatSolver
 
-__all__ = ["CpSatSolver", "model_alone"]
+__all__ = ["CompleteModel", "CompleteModelSolver", "CpSatSolver"]

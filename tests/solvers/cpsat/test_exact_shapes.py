@@ -19,7 +19,7 @@ from cellcolor.lab.families import hub_grid
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import exact_shapes, hub_ways
 from cellcolor.solvers.cpsat.exact_shapes import exact_minimum
-from cellcolor.solvers.cpsat.model.painting import canonical, division_of
+from cellcolor.solvers.cpsat.painting import canonical, division_of
 from cellcolor.solvers.cpsat.parts import split
 from cellcolor.solvers.interface import Options
 from examples import examples

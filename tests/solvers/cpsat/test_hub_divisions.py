@@ -12,7 +12,7 @@ from cellcolor.lab.families import hub, hub_grid, hub_minimum, hub_with_loops
 from cellcolor.solvers.bounds.hubs import hub_bound, joinable_colors, links_bound
 from cellcolor.solvers.cpsat.hub_division import divide_hubs
 from cellcolor.solvers.cpsat.hub_groups import many_links
-from cellcolor.solvers.cpsat.model.painting import division_of, segments_of
+from cellcolor.solvers.cpsat.painting import division_of, segments_of
 from cellcolor.solvers.cpsat.parts import split
 from examples import examples
 

@@ -14,7 +14,7 @@ from cellcolor.checker.division import check_division
 from cellcolor.lab.families import planar_graph
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.model.full import full_model, read_painting
-from cellcolor.solvers.cpsat.model.painting import Block, canonical, division_of
+from cellcolor.solvers.cpsat.painting import Block, canonical, division_of
 from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import refined
 from cellcolor.solvers.cpsat.routes.segment_plans import PlannedSegment

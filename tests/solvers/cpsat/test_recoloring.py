@@ -19,8 +19,8 @@ from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import planar_graph, voronoi
-from cellcolor.solvers.cpsat.model.dart_graph import dart_graph, seams_of
-from cellcolor.solvers.cpsat.model.painting import (
+from cellcolor.solvers.cpsat.dart_graph import dart_graph, seams_of
+from cellcolor.solvers.cpsat.painting import (
     Block,
     Painting,
     canonical,

@@ -18,8 +18,8 @@ from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.solvers.bounds.cover import set_cover
 from cellcolor.solvers.checked import solve
-from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, seams_of
-from cellcolor.solvers.cpsat.model.painting import division_of
+from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph, seams_of
+from cellcolor.solvers.cpsat.painting import division_of
 from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import refined
 from cellcolor.solvers.cpsat.routes.segment_plans import PlannedSegment, SegmentPlan

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER
-from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
-from cellcolor.solvers.cpsat.model.painting import Block
+from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph
+from cellcolor.solvers.cpsat.painting import Block
 from cellcolor.solvers.cpsat.schemes.cell_divisions import ZERO, Blocks, divisions
 from cellcolor.solvers.cpsat.schemes.shown_colors import Choices, choices_with, shown_in_cell
 from cellcolor.solvers.cpsat.schemes.zero_darts import zeros_can_differ

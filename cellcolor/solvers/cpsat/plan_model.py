@@ -3,15 +3,14 @@
 Terms, with the places that define them:
 
 - A **merged cell** consists of cells that nothing separates in any color (``merged_surface``).
-- A **parting** of two color regions (``conflicts``): if a segment of the one region touches both
+- A **separation** of two color regions (``conflicts``): if a segment of the one region touches both
   ``ends``, no segment of the other region touches merged cells of two of the ``groups``.
-- A **tangle** (``tangles``): segments of which any two fit but not all can be drawn.
-- Merged cells of a region are of one **kind** if the same partings and tangles name them in the
-  same places. A segment that touches one of a kind may then touch all of them, so the model has one
-  literal for each kind, not for each merged cell.
+- Merged cells of a region are of one **kind** if the same separations name them in the same places.
+  A segment that touches one of a kind may then touch all of them, so the model has one literal for
+  each kind, not for each merged cell.
 - A region gets several **copies**, of which the plan uses as many as it has segments there. If it
   may have more segments than copies, nothing is asked of a plan that has: such a region touches all
-  its merged cells, and no parting and no tangle counts there.
+  its merged cells, and no separation counts there.
 """
 
 from __future__ import annotations
@@ -21,12 +20,10 @@ from itertools import chain, product
 
 from ortools.sat.python import cp_model
 
-from cellcolor.solvers.bounds.tangles import Tangle
-
-PartedCells = Mapping[
+SeparatedCells = Mapping[
     tuple[int, int], Sequence[tuple[Sequence[frozenset[int]], Sequence[frozenset[int]]]]
 ]
-"""For the numbers of two color regions their partings: two sets of merged cells of the first, one
+"""For the numbers of two color regions their separations: two sets of merged cells of the first, one
 for each end, and groups of merged cells of the second."""
 
 SegmentName = tuple[int, int]
@@ -38,12 +35,11 @@ class PlanCells:
 
     Args:
         of_region: the merged cells of each color region.
-        parted: the partings that a plan has to respect.
-        tangles: the tangles that a plan has to avoid.
+        separated: the separations that a plan has to respect.
 
     Attributes:
         regions_of: the color regions of each merged cell.
-        kinds: for each color region, the merged cells that partings or tangles name; each is mapped
+        kinds: for each color region, the merged cells that separations name; each is mapped
             to the first one of its kind, which stands for the kind. Merged cells that nothing names
             have no kind: any segment of the region may touch them, so nothing has to be decided.
     """
@@ -51,16 +47,14 @@ class PlanCells:
     def __init__(
         self,
         of_region: Sequence[frozenset[int]],
-        parted: PartedCells,
-        tangles: Sequence[Tangle],
+        separated: SeparatedCells,
     ) -> None:
         self.of_region = of_region
         self.regions_of: dict[int, list[int]] = {}
         for region, merged_cells in enumerate(of_region):
             for merged_cell in sorted(merged_cells):
                 self.regions_of.setdefault(merged_cell, []).append(region)
-        self.parted = parted
-        self.tangles = tangles
+        self.separated = separated
         places: list[dict[int, list[int]]] = [{} for _ in of_region]
         for number, (region, merged_cells) in enumerate(self._named()):
             for merged_cell in merged_cells:
@@ -99,27 +93,22 @@ class PlanCells:
         return frozenset(self.kinds[region][merged_cell] for merged_cell in merged_cells)
 
     def _named(self) -> Iterable[tuple[int, frozenset[int]]]:
-        """Sets of merged cells that partings or tangles name, each with its region."""
-        for tangle in self.tangles:
-            for segment in tangle.segments:
-                for merged_cells in (*segment.groups, segment.avoided):
-                    yield segment.region, merged_cells
-        for (one, other), partings in self.parted.items():
-            for ends, groups in partings:
+        """Sets of merged cells that separations name, each with its region."""
+        for (one, other), separations in self.separated.items():
+            for ends, groups in separations:
                 yield from ((one, end) for end in ends)
                 yield from ((other, group) for group in groups)
 
 
 class PlanModel:
-    """The model of plans with an exact number of segments, or of those that cost no more than that.
+    """The model of plans with an exact number of segments.
 
     Args:
         cells: the merged cells.
-        segments: how many segments a plan has, or what they may cost.
+        segments: how many segments a plan has.
         copies: how many segments of each region the plan tells apart.
         most: how many segments each region may have at most, as many as its copies or more.
         last: the segments of the last plan with the kinds that they touch, as a hint.
-        prices: what a segment in each region costs; None where segments are counted.
 
     Attributes:
         model: the model.
@@ -135,7 +124,6 @@ class PlanModel:
         copies: Sequence[int],
         most: Sequence[int],
         last: Mapping[SegmentName, set[int]],
-        prices: Sequence[int] | None = None,
     ) -> None:
         self.model = cp_model.CpModel()
         self.in_use: dict[SegmentName, cp_model.IntVar] = {}
@@ -145,27 +133,10 @@ class PlanModel:
         self._copies = copies
         self._touching: dict[tuple[SegmentName, frozenset[int]], cp_model.IntVar] = {}
         self._add_segments(last)
-        used = [(region, own) for (region, _), own in self.in_use.items()]
-        used += self._further(most)
-        if prices is None:
-            self.model.add(sum(own for _, own in used) == segments)
-        else:
-            self.model.add(sum(prices[region] * own for region, own in used) <= segments)
+        self.model.add(sum([*self.in_use.values(), *self._further(most)]) == segments)
         self._add_cover()
-        for one, other in cells.parted:
-            self._add_partings(one, other)
-        for tangle in cells.tangles:
-            self._add_tangle(tangle)
-
-    def refuse(self, quota: Mapping[int, int]) -> None:
-        """Have a region with more segments than a quota allows it; none where it is not named."""
-        literals = []
-        for region, own in enumerate(self._copies):
-            allowed = quota.get(region, 0)
-            if allowed < own:
-                literals.append(self.in_use[region, allowed])
-            literals += self._beyond(region)
-        self.model.add_bool_or(literals)
+        for one, other in cells.separated:
+            self._add_separations(one, other)
 
     def _add_segments(self, last: Mapping[SegmentName, set[int]]) -> None:
         """Literals for the copies in use, in their order, and for the kinds that each touches."""
@@ -182,7 +153,7 @@ class PlanModel:
                 model.add_implication(literal, own)
                 model.add_hint(literal, kind in last.get(segment, ()))
 
-    def _further(self, most: Sequence[int]) -> Iterator[tuple[int, cp_model.IntVar]]:
+    def _further(self, most: Sequence[int]) -> Iterator[cp_model.IntVar]:
         """How many segments each region has besides its copies, which then are all in use."""
         for region, own in enumerate(self._copies):
             if own < most[region]:
@@ -193,7 +164,7 @@ class PlanModel:
                 self.model.add(further >= 1).only_enforce_if(literal)
                 self.model.add_hint(literal, False)
                 self.model.add_hint(further, 0)
-                yield region, further
+                yield further
 
     def _beyond(self, *regions: int) -> list[cp_model.IntVar]:
         """Literals of which one is true if one of the regions has more segments than copies."""
@@ -226,27 +197,11 @@ class PlanModel:
                 self.model.add_implication(self.touched[segment][kind], self._touching[key])
         return self._touching[key]
 
-    def _add_partings(self, one: int, other: int) -> None:
+    def _add_separations(self, one: int, other: int) -> None:
         """If a segment of ``one`` touches both ends, none of ``other`` touches two groups."""
         told_apart = [~literal for literal in self._beyond(one, other)]
-        for own, groups in self._cells.parted[one, other]:
+        for own, groups in self._cells.separated[one, other]:
             for near, far in product(self._segments_in(one), self._segments_in(other)):
                 ends = [self._touches(near, merged_cells) for merged_cells in own]
-                parted = [self._touches(far, group) for group in groups]
-                self.model.add(sum(parted) <= 1).only_enforce_if(ends + told_apart)
-
-    def _add_tangle(self, tangle: Tangle) -> None:
-        """However its segments are chosen among the copies, one breaks the tangle's conditions.
-
-        A segment breaks them if it does not touch some group, or touches what it has to avoid.
-        """
-        beyond = self._beyond(*(own.region for own in tangle.segments))
-        for segments in product(*(self._segments_in(own.region) for own in tangle.segments)):
-            if len(set(segments)) < len(segments):
-                continue  # two segments of a tangle are never the same
-            literals: list[cp_model.LiteralT] = [*beyond]
-            for segment, own in zip(segments, tangle.segments, strict=True):
-                literals += [~self._touches(segment, group) for group in own.groups]
-                kinds = self._cells.kinds_of(segment[0], own.avoided)
-                literals += [self.touched[segment][kind] for kind in sorted(kinds)]
-            self.model.add_bool_or(literals)
+                touched = [self._touches(far, group) for group in groups]
+                self.model.add(sum(touched) <= 1).only_enforce_if(ends + told_apart)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from cellcolor.data.cells_and_edges import DartName, strand_of
 from cellcolor.data.solution import Division, number_segments
-from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
+from cellcolor.solvers.cpsat.dart_graph import DartGraph
 from cellcolor.union_find import UnionFind
 
 
@@ -40,17 +40,6 @@ def division_of(
     return number_segments(blocks)
 
 
-def moved(graph: DartGraph, painting: Painting, target: DartGraph) -> Painting:
-    """A painting on a graph with the same or more strands; the strands it does not know are cut."""
-    return [
-        [
-            Block(b.color, {target.number_of[graph.darts[dart].name] for dart in b.darts})
-            for b in cell
-        ]
-        for cell in painting
-    ]
-
-
 def painting_of(graph: DartGraph, division: Division) -> Painting:
     """A solution's division on a graph that has the strands it names, or more."""
     return [
@@ -64,34 +53,23 @@ def painting_of(graph: DartGraph, division: Division) -> Painting:
 
 def segments_of(graph: DartGraph, painting: Painting) -> list[set[int]]:
     """The cells that each segment touches."""
-    return [cells for _, cells in colored_segments(graph, painting)]
-
-
-def counted(graph: DartGraph, painting: Painting, costs: Sequence[int] | None) -> int:
-    """The number of segments, or what they cost by color."""
-    found = colored_segments(graph, painting)
-    return len(found) if costs is None else sum(costs[color] for color, _ in found)
-
-
-def colored_segments(graph: DartGraph, painting: Painting) -> list[tuple[int, set[int]]]:
-    """The color of each segment, and the cells that it touches."""
     blocks = [block for cell in painting for block in cell]
     cell_of = [number for number, cell in enumerate(painting) for _ in cell]
     holder = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
     reached = [-1] * len(blocks)
-    segments: list[tuple[int, set[int]]] = []
+    segments: list[set[int]] = []
     for first, block in enumerate(blocks):
         if reached[first] >= 0:
             continue
         reached[first] = len(segments)
-        segments.append((block.color, {cell_of[first]}))
+        segments.append({cell_of[first]})
         stack = [first]
         while stack:
             for dart in blocks[stack.pop()].darts:
                 other = holder[graph.darts[dart].twin]
                 if reached[other] < 0:
                     reached[other] = reached[first]
-                    segments[-1][1].add(cell_of[other])
+                    segments[-1].add(cell_of[other])
                     stack.append(other)
     return segments
 
@@ -112,7 +90,7 @@ def canonical(
 
     None of them adds segments. The first two only add joins or remove sub-cells; the third removes
     a join and a sub-cell, so the process ends. On a graph without seams there are no more cutting
-    paths than before either (docs/encodings/fewest-cuts.md).
+    paths than before either (docs/semantics/schemes.md).
 
     Args:
         painting: what is legal on it.

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Seam
-from cellcolor.solvers.cpsat.parts import Loops, seam_places
+from cellcolor.solvers.cpsat.parts import Loops, loops_of, seam_places
 
 
 class Dart(NamedTuple):
@@ -98,7 +98,7 @@ def seams_of(
     most: int | None,
 ) -> tuple[Seam, ...]:
     """Seams from the first live loop of every cell to its other live loops; see ``widened``."""
-    loops = instance.live_loops
+    loops = loops_of(instance)
     return widened(instance, colors, strands, loops, seam_places(instance, loops), most)
 
 
@@ -109,6 +109,8 @@ def widened(
     loops: Loops,
     places: Sequence[Seam],
     most: int | None,
+    *,
+    leaves: bool = False,
 ) -> tuple[Seam, ...]:
     """Seams with as many strands as are ever needed.
 
@@ -118,6 +120,7 @@ def widened(
         loops: the loops between which seams run.
         places: where they run, in the order of cells and loops.
         most: no seam gets more strands than this; None for as many as are ever needed.
+        leaves: whether further loops with a single live dart get no strands, and count for none.
     """
     left = iter(places)
     seams: list[Seam] = []
@@ -127,6 +130,8 @@ def widened(
         counts = [
             sum(strands[abs(d)] for d in loop if _joinable(instance, colors, d)) for loop in own
         ]
+        if leaves:
+            counts[1:] = [0 if count == 1 else count for count in counts[1:]]
         widths = [count if most is None else min(count, most) for count in enough_strands(counts)]
         seams += [replace(next(left), strands=width) for width in widths]
     return tuple(seams)
@@ -138,6 +143,8 @@ def dart_graph(
     strands: Mapping[int, int],
     seams: Sequence[Seam] | None,
     loops: Loops | None = None,
+    *,
+    leaves: bool = False,
 ) -> DartGraph:
     """Put strands and seams into the instance's loops and leave out what is dead.
 
@@ -147,41 +154,76 @@ def dart_graph(
         seams: one for each further loop of a cell, all from the cell's first loop; None leaves the
             loops apart.
         loops: the loops of each cell between which its seams run; None for its live ones.
+        leaves: whether a further loop with a single live dart stays apart, without a seam.
     """
-    loops = instance.live_loops if loops is None else loops
+    loops = loops_of(instance) if loops is None else loops
     found: list[tuple[Strand, int, frozenset[int]]] = []
     lists: list[tuple[tuple[int, ...], ...]] = []
     seams_of: dict[int, list[Seam]] = {}
     for seam in seams or ():
         seams_of.setdefault(seam.cell, []).append(seam)
     joinable_of: dict[int, frozenset[int]] = {}
+
+    def joinable(dart: int) -> frozenset[int]:
+        edge = abs(dart)
+        if edge not in joinable_of:
+            joinable_of[edge] = _joinable(instance, colors, edge)
+        return joinable_of[edge]
+
     for cell, own in zip(instance.cells, loops, strict=True):
         if seams is None:
             walks = [_unseamed(loop) for loop in own]
         else:
-            walks = [_walk(own, seams_of.get(cell.id, []))]
+            between = seams_of.get(cell.id, [])
+            apart = [
+                leaves and sum(strands[abs(d)] for d in loop if joinable(d)) == 1
+                for loop in own[1:]
+            ]
+            seamed = [loop for loop, leaf in zip(own[1:], apart, strict=True) if not leaf]
+            through = [seam for seam, leaf in zip(between, apart, strict=True) if not leaf]
+            walks = [_walk([*own[:1], *seamed], through)]
+            walks += [
+                _unseamed([d for d in loop if joinable(d)])
+                for loop, leaf in zip(own[1:], apart, strict=True)
+                if leaf
+            ]
         cyclic = []
         for walk in walks:
             first = len(found)
             for dart, through in walk:
                 if through is None:
-                    edge = abs(dart)
-                    if edge not in joinable_of:
-                        joinable_of[edge] = _joinable(instance, colors, edge)
-                    joinable = joinable_of[edge]
-                    count = strands[edge] if joinable else 0
+                    own_colors = joinable(dart)
+                    count = strands[abs(dart)] if own_colors else 0
                 else:
-                    joinable, count = colors[cell.id], through.strands
+                    own_colors, count = colors[cell.id], through.strands
                 numbers = range(1, count + 1)
                 order = numbers if dart > 0 else reversed(numbers)
-                found += [((dart, strand), cell.id, joinable) for strand in order]
+                found += [((dart, strand), cell.id, own_colors) for strand in order]
             cyclic.append(tuple(range(first, len(found))))
         lists.append(tuple(cyclic))
     index = {name: number for number, (name, _, _) in enumerate(found)}
     darts = tuple(
-        Dart(name, cell, index[-name[0], name[1]], joinable) for name, cell, joinable in found
+        Dart(name, cell, index[-name[0], name[1]], own) for name, cell, own in found
     )
     return DartGraph(darts, tuple(lists), tuple(colors), tuple(seams or ()))
+
+
+def complete_graph(
+    instance: Instance,
+    strands: Mapping[int, int],
+    loops: Loops,
+    places: Sequence[Seam],
+) -> DartGraph:
+    """The graph in which every scheme can be drawn: seams as wide as needed, leaf darts apart.
+
+    Args:
+        strands: of each live edge.
+        loops: the loops of each cell between which its seams run.
+        places: where they run, in the order of cells and loops.
+    """
+    colors = tuple(frozenset(cell.colors) for cell in instance.cells)
+    seams = widened(instance, colors, strands, loops, places, None, leaves=True)
+    return dart_graph(instance, colors, strands, seams, loops, leaves=True)
 
 
 def _joinable(instance: Instance, colors: Sequence[frozenset[int]], dart: int) -> frozenset[int]:

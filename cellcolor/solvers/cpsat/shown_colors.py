@@ -1,19 +1,18 @@
 """Rule 5 for a part of the cells: what darts in state 0, zeros, can show towards the others.
 
-Each zero shows one of two colors, the earlier or the later one (``zero_darts``). To choose them so
+Each zero shows one of two colors, that of the sub-cell before it or after it along the border. To choose them so
 that no edge shows one joinable color on both sides is a 2-satisfiability problem. When only some
 cells are painted, all that matters of it is what it says about the zeros towards the other cells.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import pairwise, product
 from typing import NamedTuple
 
-from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
-from cellcolor.solvers.cpsat.schemes.cell_divisions import Blocks
-from cellcolor.solvers.cpsat.schemes.zero_darts import gap_colors
+from cellcolor.solvers.cpsat.dart_graph import DartGraph
+from cellcolor.solvers.cpsat.cell_divisions import Blocks
 
 Clause = tuple[int, ...]
 """One or two literals in ascending order, at least one of which is true. ``dart + 1`` says that the
@@ -43,9 +42,9 @@ def shown_in_cell(loops: Sequence[Sequence[int]], blocks: Blocks) -> list[ShownC
     color_of = {dart: color for color, own in blocks for dart in own}
     every = sorted({color for color, _ in blocks})
     choices = [
-        [gap_colors(loop, color_of, color) for color in every]
+        [_gap_colors(loop, color_of, color) for color in every]
         if color_of.keys().isdisjoint(loop)
-        else [gap_colors(loop, color_of, every[0])]
+        else [_gap_colors(loop, color_of, every[0])]
         for loop in loops
     ]
     return [
@@ -135,3 +134,24 @@ def _about(darts: Collection[int], clauses: Collection[Clause]) -> frozenset[Cla
         if all(abs(literal) - 1 in darts for literal in clause)
         and (len(clause) == 1 or units.isdisjoint(clause))
     )
+
+
+def _gap_colors(
+    loop: Sequence[int], color_of: Mapping[int, int], otherwise: int
+) -> dict[int, tuple[int, int]]:
+    """The colors before and after each dart in state 0 of a loop.
+
+    Args:
+        loop: the darts, in cyclic order.
+        color_of: the color of each dart in state 1.
+        otherwise: the color that all of them show if the loop has no dart in state 1.
+    """
+    met = [color_of[dart] for dart in loop if dart in color_of] or [otherwise]
+    found = {}
+    passed = 0
+    for dart in loop:
+        if dart in color_of:
+            passed += 1
+        else:
+            found[dart] = met[passed - 1], met[passed % len(met)]
+    return found

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import combinations, product
 
 from cellcolor.deadline import Deadline
-from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
-from cellcolor.solvers.cpsat.model.painting import Block
-from cellcolor.solvers.cpsat.schemes.scheme_model import unconnected_differ
+from cellcolor.solvers.cpsat.dart_graph import DartGraph
+from cellcolor.solvers.cpsat.painting import Block
+from cellcolor.union_find import UnionFind
 
 ZERO = -1
 """Stands in place of a color for a dart in state 0."""
@@ -148,4 +148,11 @@ def _kept_between_loops(loops: Sequence[Sequence[int]], blocks: Blocks) -> bool:
                 return False
         if any(a == c != b == d for a, b, c, d in combinations(held, 4)):
             return False
-    return unconnected_differ(loops, [Block(color, set(own)) for color, own in blocks])
+    # Sub-cells that no chain of loops and sub-cells connects differ in color.
+    connected: UnionFind[int] = UnionFind(range(len(blocks)))
+    for loop in loops:
+        connected.union(*(block_of[dart] for dart in loop if dart in block_of))
+    return not any(
+        blocks[one][0] == blocks[other][0] and connected[one] != connected[other]
+        for one, other in combinations(range(len(blocks)), 2)
+    )

@@ -1,6 +1,6 @@
-"""A division improved by local search: thousands of small moves a second (docs/routes.md).
+"""A division improved by local search: thousands of small moves a second (docs/solver.md).
 
-A move picks a segment of the painted nodes (``painted_nodes``) and tries to do without it:
+A move picks a segment of the painted nodes (``painted_sectors``) and tries to do without it:
 
 1. *Peel it.* Its nodes take the colors of neighboring segments, the outermost first. What no
    neighbor can take is its **kernel**: mostly the nodes of cells with one color.
@@ -19,15 +19,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from heapq import heappop, heappush
 
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
-from cellcolor.solvers.cpsat.model.painting import Painting, canonical, segments_of
-from cellcolor.solvers.cpsat.routes.painted_nodes import PaintedNodes
-from cellcolor.solvers.cpsat.routes.sectors import (
-    RefinedGraph,
-    node_colors,
-    painting_of_nodes,
-    refined,
-)
+from cellcolor.solvers.cpsat.dart_graph import DartGraph
+from cellcolor.solvers.cpsat.drawing import sector_colors
+from cellcolor.solvers.cpsat.painted_sectors import PaintedSectors
+from cellcolor.solvers.cpsat.painting import Painting, canonical, segments_of
+from cellcolor.solvers.cpsat.sectors import SectorGraph, painting_of_sectors, sector_graph
 
 ONE_MORE = 0.0013
 """The chance that a move is kept although it leaves one segment more."""
@@ -61,10 +57,10 @@ in the beginning nearly every move gains something."""
 
 
 class Recoloring:
-    """A division of a refined graph, changed node by node.
+    """A division of a sector graph, changed node by node.
 
     Args:
-        graph: the refined graph.
+        graph: the sector graph.
         colors: of each node.
         seed: of the choice of moves.
         deadline: of getting ready, which takes time by the size of the graph.
@@ -74,11 +70,11 @@ class Recoloring:
     """
 
     def __init__(
-        self, graph: RefinedGraph, colors: Sequence[int], seed: int, deadline: Deadline = NEVER
+        self, graph: SectorGraph, colors: Sequence[int], seed: int, deadline: Deadline = NEVER
     ) -> None:
         self._graph = graph
         self._chance = random.Random(seed)
-        self._painted = PaintedNodes(graph, colors, deadline)
+        self._painted = PaintedSectors(graph, colors, deadline)
         # What changing a node costs besides 1, in units of the rise, which grows with each move.
         self._price = [0.0] * len(colors)
         self._rise = 1.0
@@ -293,15 +289,15 @@ def recolor(
         rings: of sectors in a cell. One leaves room enough in most cells. With none, each cell is
             painted whole, which makes a move several times quicker.
     """
-    ways = refined(graph, rings)
-    search = Recoloring(ways, node_colors(ways, painting), seed, deadline)
+    sectors = sector_graph(graph, rings)
+    search = Recoloring(sectors, sector_colors(sectors, painting)[0], seed, deadline)
     fewest = len(segments_of(graph, painting))
     in_vain = 0
     while True:
         ended = search.fewest <= enough or in_vain >= moves * search.fewest or deadline.over
         if search.fewest < fewest and (ended or in_vain >= PAUSE):
             fewest = search.fewest
-            yield canonical(graph, painting_of_nodes(ways, search.best))
+            yield canonical(graph, painting_of_sectors(sectors, search.best))
         if ended:
             return
         before = search.fewest

@@ -1,4 +1,4 @@
-"""Optimal schemes by dynamic programming over the cells: counted exactly, listed, drawn at random.
+"""Optimal schemes by dynamic programming over the cells: counted exactly and listed.
 
 This is a frontier, or transfer matrix, method. The cells are painted one after the other. Two
 partial paintings have the same completions if they look alike from the cells to come, and make one
@@ -11,15 +11,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cache
-from random import Random
 from typing import NamedTuple
 
 from cellcolor.deadline import Deadline
 from cellcolor.errors import TooLarge
-from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
-from cellcolor.solvers.cpsat.model.painting import Block, Painting
-from cellcolor.solvers.cpsat.schemes.cell_divisions import ZERO, Blocks, divisions
-from cellcolor.solvers.cpsat.schemes.shown_colors import (
+from cellcolor.solvers.cpsat.dart_graph import DartGraph
+from cellcolor.solvers.cpsat.painting import Block, Painting
+from cellcolor.solvers.cpsat.cell_divisions import ZERO, Blocks, divisions
+from cellcolor.solvers.cpsat.shown_colors import (
     Choices,
     ShownColors,
     choices_with,
@@ -125,20 +124,6 @@ class Frontier:
             else:
                 yield self._painting(chosen)
                 chosen.pop()
-
-    def drawn(self, rng: Random) -> Painting:
-        """One scheme, each as likely as any other. There has to be one."""
-        chosen: list[Blocks] = []
-        front = 0
-        for layer, count, after in zip(self._steps, self._counts, self._counts[1:], strict=False):
-            place = rng.randrange(count[front])
-            for blocks, end in layer[front]:
-                place -= after[end]
-                if place < 0:
-                    chosen.append(blocks)
-                    front = end
-                    break
-        return self._painting(chosen)
 
     def _painting(self, chosen: Sequence[Blocks]) -> Painting:
         of_cell = dict(zip(self._order, chosen, strict=True))

@@ -10,12 +10,12 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.interruptible import make_cp_solver, make_portfolio, solve_interruptibly
 
-STRATEGIES = "core_max_lp", "max_lp"
-"""Of one or two workers. Both use the full linear relaxation; the first one raises the bound by
-cores, sets of literals of which some must cost a segment."""
+STRATEGIES = "no_lp", "default_lp", "core"
+"""Of one or two workers, in turns. Without a linear relaxation divisions are found, with it bounds;
+the last one raises the bound by cores, sets of literals of which some must cost a segment."""
 
-SolveWithSeed = Callable[[cp_model.CpModel, int], tuple[cp_model.CpSolver, cp_model.CpSolverStatus]]
-"""Solves a model with a seed, within limits that it knows; hands back the solver and its status."""
+Solve = Callable[[cp_model.CpModel], tuple[cp_model.CpSolver, cp_model.CpSolverStatus]]
+"""Solves a model within limits that it knows; hands back the solver and its status."""
 
 
 class Runner:
@@ -34,35 +34,17 @@ class Runner:
         """Whether there is no time left, or Ctrl-C came."""
         return self._stopped or self._options.deadline.over
 
-    @property
-    def left(self) -> float:
-        """Seconds that are left, 0 after Ctrl-C."""
-        return 0.0 if self._stopped else self._options.deadline.left
+    def portfolio(self, deadline: Deadline) -> cp_model.CpSolver:
+        """A solver with the options' workers."""
+        return make_portfolio(deadline, self._options.workers, self._options.seed, STRATEGIES)
 
-    def portfolio(
-        self, effort: float | None = None, deadline: Deadline | None = None
-    ) -> cp_model.CpSolver:
-        """A solver with the options' workers.
-
-        Args:
-            effort: deterministic seconds per worker, None for all the time left.
-            deadline: an earlier one than the options'.
-        """
-        its = self._options
-        return make_portfolio(deadline or its.deadline, its.workers, its.seed, STRATEGIES, effort)
-
-    def single(
-        self, effort: float | None = None, seed: int = 0, deadline: Deadline | None = None
-    ) -> cp_model.CpSolver:
+    def single(self, effort: float, deadline: Deadline) -> cp_model.CpSolver:
         """A solver with one worker, for models that are too small for a portfolio.
 
         Args:
-            effort: deterministic seconds, None for all the time left.
-            seed: added to the options' seed.
-            deadline: an earlier one than the options'.
+            effort: deterministic seconds.
         """
-        its = self._options
-        return make_cp_solver(deadline or its.deadline, 1, its.seed + seed, effort)
+        return make_cp_solver(deadline, 1, self._options.seed, effort)
 
     def solve(
         self,

@@ -10,17 +10,17 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from cellcolor.deadline import Deadline
-from cellcolor.solvers.cpsat.routes.sectors import RefinedGraph
+from cellcolor.solvers.cpsat.sectors import SectorGraph
 
 
-class PaintedNodes:
-    """The nodes of a refined graph, each painted in one of its color regions.
+class PaintedSectors:
+    """The nodes of a sector graph, each painted in one of its color regions.
 
     A region says more than a color: where the color can spread to, and that it is of no use to look
     for a segment elsewhere.
 
     Args:
-        graph: the refined graph.
+        graph: the sector graph.
         colors: of each node.
         deadline: when to stop, as this takes time by the size of the graph.
 
@@ -35,7 +35,7 @@ class PaintedNodes:
         count: of each region, how many segments it has.
     """
 
-    def __init__(self, graph: RefinedGraph, colors: Sequence[int], deadline: Deadline) -> None:
+    def __init__(self, graph: SectorGraph, colors: Sequence[int], deadline: Deadline) -> None:
         self.graph = graph
         self._find_regions(deadline)
         self._named = 0
@@ -158,7 +158,7 @@ class PaintedNodes:
         self.near: list[dict[int, list[int]]] = []
         self._number: dict[tuple[int, int], int] = {}
         for color in sorted({color for colors in graph.graph.colors for color in colors}):
-            near = graph.near(color)
+            near = _near(graph, color)
             for first in deadline.watch(near):
                 if (color, graph.cell[first]) in self._number:
                     continue
@@ -192,3 +192,19 @@ class PaintedNodes:
             )
         ]
         self.fixed = {node for node, cell in enumerate(graph.cell) if len(self.choices[cell]) == 1}
+
+
+def _near(graph: SectorGraph, color: int) -> dict[int, list[int]]:
+    """The neighbors that can have a color, of each sector that can; those of its cell come first.
+
+    They never lead out of a color region.
+    """
+    return {
+        node: [
+            *graph.beside[node],
+            *(other for other, joinable in graph.across[node] if color in joinable),
+        ]
+        for cell, nodes in enumerate(graph.nodes)
+        if color in graph.graph.colors[cell]
+        for node in nodes
+    }
