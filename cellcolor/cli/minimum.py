@@ -147,11 +147,6 @@ def _build_surface(source: Path, output: Path) -> Instance:
 @TOLERANCE
 @click.option("--all", "every", is_flag=True, help="List all optimal schemes.")
 @click.option(
-    "--fewest-cuts",
-    is_flag=True,
-    help="Find one of the best divisions with the fewest cutting paths.",
-)
-@click.option(
     "--color-cost",
     "objective",
     metavar="COLOR=N",

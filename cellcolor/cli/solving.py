@@ -83,7 +83,6 @@ class Request:
     left_alone: Place | None
     tolerance: str | None
     every: bool
-    fewest_cuts: bool
     objective: Objective | None
     warm_start: Path | None
     limit: int | None
@@ -114,7 +113,6 @@ class Request:
             deadline=deadline,
             workers=self.workers,
             seed=self.seed,
-            fewest_cuts=self.fewest_cuts,
             objective=self.objective or FEWEST_SEGMENTS,
         )
 
@@ -187,7 +185,6 @@ def _told(request: Request, file: Path, result: Result) -> Exit:
     return Exit.done_if(
         solution.status == "optimal"
         and solution.complete is not False
-        and solution.cutting_paths == solution.cutting_paths_lower_bound
         and (refinement is None or refinement.stable)
     )
 
@@ -199,7 +196,7 @@ def _check_able(request: Request) -> None:
     """
     start = request.warm_start is not None
     able = request.search_space == "paper" and request.objective is None
-    if request.every or start or request.fewest_cuts or not able:
+    if request.every or start or not able:
         from cellcolor.solvers.checked import check_able
 
         try:
@@ -260,7 +257,6 @@ def _solve(file: Path, target: Path | None, request: Request, deadline: Deadline
             time_limit=deadline,
             workers=request.workers,
             seed=request.seed,
-            fewest_cuts=request.fewest_cuts,
             objective=request.options().objective,
             start=request.warm_start,
             cover=request.cover,

@@ -127,10 +127,6 @@ def _summary(solution: Solution) -> list[tuple[str, str]]:
             ("cost", f"{_number(solution.cost)} ({proof})"),
             ("objective", str(solution.objective)),
         ]
-    if solution.cutting_paths is not None:
-        fewest = solution.cutting_paths == solution.cutting_paths_lower_bound
-        proof = "fewest" if fewest else f"at least {solution.cutting_paths_lower_bound}"
-        lines.insert(2, ("cutting paths", f"{solution.cutting_paths} ({proof})"))
     lines += [("note", note) for note in solution.notes]
     if solution.schemes is not None:
         lines.insert(3, ("schemes", f"{solution.schemes} ({_extent(solution)})"))

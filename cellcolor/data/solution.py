@@ -145,9 +145,9 @@ class Solution(Document):
         seconds: wall-clock time spent solving.
         schemes: with "all optimal schemes" asked for, how many were found.
         complete: with "all optimal schemes" asked for, whether that is all of them.
-        cutting_paths: with "fewest cutting paths" asked for, how many the division has.
-        cutting_paths_lower_bound: with "fewest cutting paths" asked for, no division in the search
-            space with as few segments has fewer.
+        cutting_paths: in older solutions that have it, how many the division has.
+        cutting_paths_lower_bound: in older solutions that have it, no division in the search space
+            with as few segments has fewer.
         bounds: how ``lower_bound`` and ``surface_lower_bound`` were proved, each the greatest of
             its kind in here; None where that is not said, as in files of version 1.
         coverage: the instance's, so that the solution alone gives the shares.

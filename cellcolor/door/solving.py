@@ -88,7 +88,6 @@ def solve(
     time_limit: TimeLimit = None,
     workers: int | None = None,
     seed: int = 0,
-    fewest_cuts: bool = False,
     objective: Objective = FEWEST_SEGMENTS,
     start: Solution | Result | str | PathLike[str] | None = None,
     cover: float | None = None,
@@ -112,8 +111,6 @@ def solve(
         time_limit: seconds for all of it, None for no limit.
         workers: CP-SAT's search workers, None for its portfolio.
         seed: for all random choices.
-        fewest_cuts: of the divisions with the fewest segments find one with the fewest cutting
-            paths.
         objective: what segments cost by color, or what it costs to leave area uncovered, where the
             number of segments is not all that matters. What is best left out is settled first, as
             by ``tradeoff``.
@@ -156,7 +153,6 @@ def solve(
         workers=workers,
         seed=seed,
         start=None if start is None else start_from(start, instance, strands),
-        fewest_cuts=fewest_cuts,
         objective=replace(objective, uncovered_price=None),
     )
     refinement = None
@@ -275,9 +271,7 @@ def _with_minimum_modulo(solution: Solution, subject: Subject, options: Options)
 def _solved_beside(surface: LabelledSurface, options: Options) -> Solution | str:
     """The minimum of another surface, in at most ten seconds; or why there is none."""
     deadline = Deadline(min(options.deadline.moment, Deadline.after(_BESIDE_SECONDS).moment))
-    asked = replace(
-        options, deadline=deadline, start=None, fewest_cuts=False, objective=FEWEST_SEGMENTS
-    )
+    asked = replace(options, deadline=deadline, start=None, objective=FEWEST_SEGMENTS)
     try:
         graph = decomposition_of(surface, deadline=deadline).instance
         return checked.solve(graph, asked, DEFAULT)

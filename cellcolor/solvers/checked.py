@@ -9,7 +9,6 @@ from typing import Any
 
 from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.color_regions import regions_of_cells
-from cellcolor.checker.cutting_paths import cutting_paths
 from cellcolor.checker.dart_lists import MOST_DARTS
 from cellcolor.checker.division import Report, check_scheme, check_solution
 from cellcolor.data.bound_kinds import CertifiedCells, kind_of
@@ -49,16 +48,14 @@ def check_able(name: str, options: Options, *, start: bool = False, schemes: boo
     able = make_solver(name).abilities
     for field, asked, can in (
         ("start", start or options.start is not None, able.start),
-        ("fewest_cuts", options.fewest_cuts, able.fewest_cuts),
         ("schemes", schemes, able.optimal_schemes),
         ("objective", not options.objective.is_default, able.objective),
     ):
         if asked and not can:
             raise InputError(None, field, f"is more than the solver {name} can do")
     options.objective.allow("segments")
-    if not options.objective.is_default and (schemes or options.fewest_cuts):
-        field = "schemes" if schemes else "fewest_cuts"
-        raise InputError(None, field, "goes with the fewest segments, not with another objective")
+    if not options.objective.is_default and schemes:
+        raise InputError(None, "schemes", "goes with the fewest segments only")
     if options.search_space not in able.search_spaces:
         spaces = " and ".join(able.search_spaces)
         message = f"is {options.search_space}, the solver {name} searches {spaces}"
@@ -155,9 +152,6 @@ def solution_of(
         status = "unknown"
     elif value == proved[0] or (options.search_space == "paper" and value == proved[1]):
         status = "optimal"
-    cuts = None
-    if answer.cutting_paths_lower_bound is not None and answer.division is not None:
-        cuts = cutting_paths(instance, answer.division, answer.seams)
     return Solution(
         instance=InstanceReference(instance.name, instance.sha256),
         search_space=options.search_space,
@@ -172,8 +166,6 @@ def solution_of(
         seams=answer.seams,
         cells=answer.division,
         seconds=seconds,
-        cutting_paths=cuts,
-        cutting_paths_lower_bound=answer.cutting_paths_lower_bound,
         bounds=bounds,
         coverage=instance.coverage,
         notes=answer.notes,

@@ -54,8 +54,6 @@ class Options:
         workers: CP-SAT's search workers, at most 1000, None for ``PORTFOLIO``.
         seed: for everything that is random.
         start: a division to start from, for solvers that can do this.
-        fewest_cuts: of the divisions with the fewest segments find one with the fewest cutting
-            paths, for solvers that can do this.
         objective: what to minimise; other than the number of segments for solvers that can do this.
 
     Raises:
@@ -68,7 +66,6 @@ class Options:
     workers: Annotated[int, Ge(1), Le(1000)] | None = None
     seed: Annotated[int, Ge(0), Le(2**31 - 1)] = 0
     start: Start | None = None
-    fewest_cuts: bool = False
     objective: Objective = FEWEST_SEGMENTS
 
     def __post_init__(self) -> None:
@@ -98,15 +95,12 @@ class Answer:
         division: the best division found, None when none was found.
         seams: the seams that its darts refer to.
         bounds: what was proved about the fewest segments and the least cost, and how.
-        cutting_paths_lower_bound: no division in the search space with the fewest segments has
-            fewer cutting paths; None when that was not asked for.
         notes: what was left out and why, a sentence each, such as a model too large to be built.
     """
 
     division: Division | None
     seams: tuple[Seam, ...]
     bounds: tuple[Bound, ...]
-    cutting_paths_lower_bound: int | None = None
     notes: tuple[str, ...] = ()
 
     @property
@@ -129,7 +123,6 @@ class Abilities:
         optimal_schemes: it lists all optimal schemes, so it is a :class:`SchemeSolver`.
         schemes_of_several_loops: it does so even where cells have several live loops.
         start: it can start from a division (``Options.start``).
-        fewest_cuts: it can look for the fewest cutting paths (``Options.fewest_cuts``).
         objective: it can minimise something else than the number of segments
             (``Options.objective``). Its bounds of that are ``of`` the cost.
     """
@@ -139,7 +132,6 @@ class Abilities:
     optimal_schemes: bool = False
     schemes_of_several_loops: bool = False
     start: bool = False
-    fewest_cuts: bool = False
     objective: bool = False
 
 

@@ -275,7 +275,6 @@ USAGE = {
     "time that is not a number": ["solve", RING, "--time-limit", "nan"],
     "no workers": ["solve", RING, "--workers", "0"],
     "negative seed": ["solve", RING, "--seed", "-1"],
-    "fewest cuts with dfs": ["solve", RING, "--solver", "dfs", "--fewest-cuts"],
     "warm start with dfs": ["solve", RING, "--solver", "dfs", "--warm-start", RING],
     "warm start of two": ["solve", RING, RING, "--warm-start", RING],
     "build without output": ["build", str(PAPER / "ring.surface.json")],

@@ -22,14 +22,6 @@ Capture = pytest.CaptureFixture[str]
 class TestMore:
     """Options beyond the contract: a second objective, a start, a warning, a reason."""
 
-    def test_fewest_cuts(self, tmp_path: Path, capsys: Capture) -> None:
-        target = tmp_path / "solution.json"
-        assert run("solve", PAPER / "split-cell.json", "--fewest-cuts", "-o", target) == 0
-        assert "cutting paths  1 (fewest)" in capsys.readouterr().out
-        solution = Solution.read(target)
-        assert (solution.cutting_paths, solution.cutting_paths_lower_bound) == (1, 1)
-        assert run("check", PAPER / "split-cell.json", target) == 0
-
     def test_color_cost(self, tmp_path: Path, capsys: Capture) -> None:
         """What is minimized is told, written and checked; nothing else is done by it."""
         target = tmp_path / "solution.json"
@@ -64,7 +56,6 @@ class TestMore:
             (["--color-cost", "red=0"], "greater than or equal to 1"),
             (["--color-cost", "red=2", "--color-cost", "red=3"], "has the color 'red' twice"),
             (["--color-cost", "red=2", "--all"], "--color-cost excludes --all"),
-            (["--color-cost", "red=2", "--fewest-cuts"], "fewest_cuts: goes with the fewest"),
             (["--color-cost", "red=2", "--solver", "cp-sat-ranks"], "is more than the solver"),
             (["--color-cost", "pink=2"], "names the color 'pink', the instance has "),
         ],

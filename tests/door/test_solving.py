@@ -201,7 +201,6 @@ def test_a_notebook_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> Non
         ({"workers": "two"}, "workers: "),
         ({"search_space": "all"}, "search_space: "),
         ({"strands": 2}, "strands: must be 1 in search space 'paper'"),
-        ({"solver": "dfs", "fewest_cuts": True}, "fewest_cuts"),
         ({"objective": Objective({"pink": 2})}, "objective.segments: names the color 'pink'"),
         ({"objective": Objective({"red": 2}), "cover": 0.5}, "objective: takes costs of colors or"),
         (
@@ -241,7 +240,6 @@ def test_options_reach_the_solver() -> None:
     found = cellcolor.solve("parallel-corridors", search_space="surface", strands=3, seed=4)
     assert (found.solution.strands, found.segments) == (3, 2)
     assert cellcolor.solve("ring", solver="dfs").solution.solver == "dfs"
-    assert cellcolor.solve("ring", fewest_cuts=True).solution.cutting_paths is not None
     red = cellcolor.decompose("ring").colors[0]
     assert cellcolor.solve("ring", objective=Objective({red: 2})).solution.cost is not None
     seen: list[tuple[int | None, int]] = []

@@ -325,8 +325,6 @@ def test_the_cost_is_told_where_it_matters() -> None:
 
 def test_what_does_not_go_together_is_refused() -> None:
     objective = Objective({"red": 3})
-    with pytest.raises(InputError, match="fewest_cuts: goes with the fewest segments"):
-        solve(TWO, Options(objective=objective, fewest_cuts=True))
     with pytest.raises(InputError, match="schemes: goes with the fewest segments"):
         next(enumerate_schemes(TWO, Options(objective=objective), "cp-sat", 1))
     with pytest.raises(InputError, match="names the color 'pink', the instance has 'red', 'green'"):

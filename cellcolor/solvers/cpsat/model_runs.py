@@ -34,11 +34,6 @@ class Runner:
         """Whether there is no time left, or Ctrl-C came."""
         return self._stopped or self._options.deadline.over
 
-    @property
-    def left(self) -> float:
-        """Seconds that are left, 0 after Ctrl-C."""
-        return 0.0 if self._stopped else self._options.deadline.left
-
     def portfolio(
         self, effort: float | None = None, deadline: Deadline | None = None
     ) -> cp_model.CpSolver:

@@ -17,7 +17,6 @@ from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import greedy_strangers
 from cellcolor.solvers.bounds.reductions import LeftOut, drop_dominated, left_out
 from cellcolor.solvers.cpsat.conflict_certificate import conflict_certificate
-from cellcolor.solvers.cpsat.cuts import FewestCuts
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
 from cellcolor.solvers.cpsat.model.full import cheapest
 from cellcolor.solvers.cpsat.model.painting import (
@@ -53,7 +52,6 @@ class CpSatSolver:
         optimal_schemes=True,
         schemes_of_several_loops=True,
         start=True,
-        fewest_cuts=True,
         objective=True,
     )
 
@@ -70,7 +68,7 @@ class CpSatSolver:
     ) -> Answer:
         """A division with the fewest segments, or the best found before the deadline."""
         if not instance.cells:
-            return Answer((), (), (), 0 if options.fewest_cuts else None)
+            return Answer((), (), ())
         search = _Search(instance, options, progress, self._plans)
         with suppress(OutOfTime):
             search.run()
@@ -105,7 +103,6 @@ class _Search:
         self._start: tuple[DartGraph, Painting] | None = None
         self._whole: tuple[DartGraph, Painting] | None = None
         self._parts: list[PartSearch] = []
-        self._fewest: FewestCuts | None = None
         self._left_out: list[LeftOut] = []
 
     def run(self) -> None:
@@ -133,8 +130,6 @@ class _Search:
         self._report()
         for stage in self._stages():
             self._run_stage(stage, [part for part in self._parts if not part.done])
-        if options.fewest_cuts and all(part.segments == part.bound for part in self._parts):
-            self._cut_least(colors)
 
     def answer(self) -> Answer:
         """The best division, in the strands that were asked for, and the proved bounds."""
@@ -146,34 +141,12 @@ class _Search:
             if self._counted(start) < self._counted(division):
                 graph, division = known, start
         notes = {note for part in self._parts for note in part.models.notes}
-        cuts = 0 if self._options.fewest_cuts else None
-        if self._fewest is not None:
-            cuts = self._fewest.bound
-            notes |= set(self._fewest.notes)
-            if self._fewest.best is not None:
-                graph, painting = self._fewest.best
-                division = division_of(graph, painting, self._options.strands)
-        return Answer(division, graph.seams, self._bounds(), cuts, tuple(sorted(notes)))
+        return Answer(division, graph.seams, self._bounds(), tuple(sorted(notes)))
 
     def _counted(self, division: Division) -> int:
         """The segments of a division, or what they cost."""
         costs = self._costs
         return count_segments(division) if costs is None else cost_of(division, costs)
-
-    def _cut_least(self, colors: tuple[frozenset[int], ...]) -> None:
-        """Among the divisions with the fewest segments, one with the fewest cutting paths."""
-        live = self._instance.live_edges
-        enough = {edge: width for part in self._parts for edge, width in part.widest.items()}
-        segments = sum(part.segments for part in self._parts)
-        self._fewest = FewestCuts(
-            self._instance,
-            colors,
-            {edge: enough.get(edge, 1) for edge in live},
-            dict.fromkeys(live, self._options.strands),
-            segments,
-            self._runner,
-        )
-        self._fewest.run(*self._put_together())
 
     def _stages(self) -> list[_Stage]:
         """The stages in order, steps 3 to 11 of docs/solver.md.

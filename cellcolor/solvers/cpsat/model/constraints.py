@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from ortools.sat.python import cp_model
 
@@ -34,8 +34,6 @@ class Variables:
         root: per dart: it is the root of its segment.
         alone: per cell: it has no dart in state 1, and is a segment of its own.
         rank: per dart: falls along every pointer, strictly across edges.
-        bridges: per two darts on loops of one cell that no seam connects: they are in one
-            sub-cell, and the first points at the second (see ``loops_apart``).
     """
 
     joined: dict[tuple[int, int], cp_model.IntVar]
@@ -45,7 +43,6 @@ class Variables:
     root: list[cp_model.IntVar]
     alone: list[cp_model.IntVar]
     rank: list[cp_model.IntVar]
-    bridges: dict[tuple[int, int], cp_model.IntVar] = field(default_factory=dict)
 
     def links(self, one: int, other: int) -> tuple[cp_model.IntVar, ...]:
         """The literals that link two darts, none if they share no color."""
@@ -100,8 +97,6 @@ def one_pointer(
     for (one, other), literal in v.forward.items():
         pointers[one].append(literal)
         pointers[other].append(v.backward[one, other])
-    for (one, _other), literal in v.bridges.items():
-        pointers[one].append(literal)
     for dart, found in enumerate(pointers):
         model.add(sum(found) == v.up[dart] + v.up[graph.darts[dart].twin])
 
@@ -121,15 +116,13 @@ def one_chain(model: cp_model.CpModel, graph: DartGraph, v: Variables, _: Sequen
 def equal_colors(
     model: cp_model.CpModel, graph: DartGraph, v: Variables, _: Sequence[Region]
 ) -> None:
-    """Linked darts are joined in one and the same color, and so are bridged ones."""
-    linked = [(pair, v.links(*pair)) for pair in v.forward]
-    linked += [(pair, (bridge,)) for pair, bridge in v.bridges.items()]
-    for pair, literals in linked:
+    """Linked darts are joined in one and the same color."""
+    for pair in v.forward:
         for one, other in (pair, pair[::-1]):
             own, its = (min(dart, graph.darts[dart].twin) for dart in (one, other))
             for color in sorted(graph.darts[one].colors):
                 same = [v.joined[its, color]] if color in graph.darts[other].colors else []
-                for literal in literals:
+                for literal in v.links(*pair):
                     model.add_bool_or([~literal, ~v.joined[own, color], *same])
 
 
@@ -170,8 +163,6 @@ def no_circles(
     for (one, other), literal in v.forward.items():
         model.add(v.rank[one] >= v.rank[other]).only_enforce_if(literal)
         model.add(v.rank[other] >= v.rank[one]).only_enforce_if(v.backward[one, other])
-    for (one, other), literal in v.bridges.items():
-        model.add(v.rank[one] >= v.rank[other]).only_enforce_if(literal)
 
 
 def cover(

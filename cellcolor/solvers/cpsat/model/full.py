@@ -153,37 +153,6 @@ def _weighed(
     return sum(terms), dearer
 
 
-def fewest_subcells(
-    model: cp_model.CpModel,
-    graph: DartGraph,
-    v: Variables,
-    alone: Sequence[cp_model.IntVar],
-    segments: int,
-    more: Sequence[cp_model.IntVar] = (),
-) -> None:
-    """Change what a model minimizes: the number of sub-cells, at a given number of segments.
-
-    The joins of a segment make a tree of its sub-cells, so there are as many sub-cells as segments
-    and joins together. Two sub-cells that are joined across a seam are one on the surface, so joins
-    across seams do not count.
-
-    Args:
-        alone: per cell, whether it has no dart in state 1.
-        segments: how many there have to be.
-        more: further literals, each of which counts like one more sub-cell.
-    """
-    seams = {seam.id for seam in graph.seams}
-    joins = [
-        literal
-        for (edge, _), literal in v.joined.items()
-        if abs(graph.darts[edge].name[0]) not in seams
-    ]
-    model.add(sum(v.root) + sum(alone) == segments)
-    # Every cell has a sub-cell at least, which gives the solver a bound to begin with.
-    model.add(sum(joins) >= len(alone) - segments)
-    model.minimize(sum([*joins, *more]))
-
-
 def read_painting(
     graph: DartGraph,
     v: Variables,

@@ -6,7 +6,7 @@ Conditions that concern more than one dart are tested on each solution.
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import closing
 from hashlib import blake2b
 from math import isfinite
@@ -21,22 +21,23 @@ from cellcolor.data.solution import Division
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import CellcolorError, InputError, TooLarge
 from cellcolor.solvers.bounds.cover import color_regions
-from cellcolor.solvers.cpsat.cuts import unseamed
-from cellcolor.solvers.cpsat.model.dart_graph import dart_graph
+from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
 from cellcolor.solvers.cpsat.model.painting import (
+    Block,
     Painting,
     canonical,
     division_of,
     moved,
     painting_of,
 )
-from cellcolor.solvers.cpsat.model.seams import SeamWriter
+from cellcolor.solvers.cpsat.model.seams import Drawings
 from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.schemes.cell_divisions import Blocks
 from cellcolor.solvers.cpsat.schemes.frontier import Frontier
 from cellcolor.solvers.cpsat.schemes.scheme_model import SchemeModel, check_size, unconnected_differ
 from cellcolor.solvers.cpsat.schemes.zero_darts import zeros_can_differ
 from cellcolor.solvers.interface import Options
+from cellcolor.union_find import UnionFind
 
 _AHEAD = 100
 """The most schemes found but not yet taken; then the search pauses."""
@@ -91,7 +92,7 @@ class OptimalSchemes(Iterator[Division]):
         if frontier is not None and frontier.count:
             for _ in range(number):
                 self._search.options.deadline.check()
-                yield division_of(self._search.writer.graph, frontier.drawn(rng))
+                yield division_of(self._search.graph, frontier.drawn(rng))
 
 
 class _Search:
@@ -101,7 +102,8 @@ class _Search:
         self.options = options
         self.count: int | None = None
         self.frontier: Frontier | None = None
-        self.writer: SeamWriter
+        self.graph: DartGraph
+        self._drawings: Drawings
         self._instance, self._segments = instance, segments
 
     def all(self) -> Generator[Division, None, None]:
@@ -121,8 +123,10 @@ class _Search:
             solver = runner.single()
             return solver, runner.solve(solver, small)
 
-        self.writer = SeamWriter(instance, dict.fromkeys((e.id for e in instance.edges), 1), solve)
-        graph = self.writer.graph
+        colors = [frozenset(cell.colors) for cell in instance.cells]
+        once = dict.fromkeys(instance.live_edges, 1)
+        graph = self.graph = dart_graph(instance, colors, once, None)
+        self._drawings = Drawings(graph, solve)
         start = self._start()
         if start is not None:
             yield division_of(graph, start)
@@ -152,34 +156,34 @@ class _Search:
 
     def _is_scheme(self, painting: Painting) -> bool:
         """Whether a painting with the fewest segments keeps the rules that the model leaves out."""
-        graph = self.writer.graph
+        graph = self.graph
         return (
             all(map(unconnected_differ, graph.loops, painting))
             and zeros_can_differ(graph, painting, self.options.deadline)
-            and self.writer.can_be_drawn(painting)
+            and self._drawings.possible(painting)
         )
 
     def _start(self) -> Painting | None:
         """The scheme of the division to start from."""
-        start, graph = self.options.start, self.writer.graph
+        start, graph = self.options.start, self.graph
         if start is None:
             return None
         strands = dict.fromkeys(self._instance.live_edges, 1)
         seamed = dart_graph(self._instance, graph.colors, strands, start.seams)
-        whole = [unseamed(seamed, blocks) for blocks in painting_of(seamed, start.division)]
+        whole = [_unseamed(seamed, blocks) for blocks in painting_of(seamed, start.division)]
         settled = canonical(graph, moved(seamed, whole, graph))
         return settled if self._is_scheme(settled) else None
 
     def _counted(self, deadline: Deadline, given: Mapping[int, Blocks] | None = None) -> Frontier:
         regions = color_regions(self._instance)
-        draw = self.writer.cell_can_be_drawn
-        return Frontier(self.writer.graph, regions, self._segments, draw, deadline, given)
+        draw = self._drawings.possible_in
+        return Frontier(self.graph, regions, self._segments, draw, deadline, given)
 
     def _nearby(self, start: Painting | None) -> Iterator[Painting | None]:
         """Schemes that differ from a known one in a few cells only; None after each try."""
         if start is None:
             return
-        graph, rng, known = self.writer.graph, Random(self.options.seed), [start]
+        graph, rng, known = self.graph, Random(self.options.seed), [start]
         around = [
             sorted({graph.darts[graph.darts[dart].twin].cell for dart in own})
             for own in graph.lists
@@ -215,6 +219,24 @@ class _Search:
             elif rng.random() < 0.01:
                 known[rng.randrange(_KNOWN)] = painting
             yield painting
+
+
+def _unseamed(graph: DartGraph, blocks: Sequence[Block]) -> list[Block]:
+    """A cell's sub-cells on the surface: seams neither divide them nor have darts."""
+    seams = {seam.id for seam in graph.seams}
+    holder = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
+    whole: UnionFind[int] = UnionFind(range(len(blocks)))
+    virtual = {dart for dart in holder if abs(graph.darts[dart].name[0]) in seams}
+    for dart in virtual:
+        if graph.darts[dart].twin in virtual:
+            whole.union(holder[dart], holder[graph.darts[dart].twin])
+    return [
+        Block(
+            blocks[min(parts)].color,
+            {dart for part in parts for dart in blocks[part].darts if dart not in virtual},
+        )
+        for parts in whole.sets()
+    ]
 
 
 def _key(division: Division) -> bytes:
