@@ -233,6 +233,10 @@ CLAIMS = {
         PAPER / "ring.json",
         document(SOLUTION, put("version", to=3), "version"),
     ),
+    "solution with an objective, as an older version wrote it": (
+        PAPER / "ring.json",
+        Bad(json.dumps(SOLUTION | {"objective": {"segments": {"red": 3}}}), "objective"),
+    ),
     "solution with null segments": (
         PAPER / "ring.json",
         document(SOLUTION, put("segments", to=None), "segments"),

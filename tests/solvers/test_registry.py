@@ -13,7 +13,6 @@ from guides import install
 from library import PAPER
 
 from cellcolor.data.instance import Instance
-from cellcolor.data.objective import Objective
 from cellcolor.errors import InputError, SolverMissing
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options, SchemeSolver, Start
@@ -85,14 +84,6 @@ class TestAbilities:
             assert self.found(name, options) == 2
             return
         with pytest.raises(InputError, match=f"start: is more than the solver {name} can do"):
-            self.found(name, options)
-
-    def test_objective(self, name: str) -> None:
-        options = Options(objective=Objective({INSTANCE.colors[0]: 2}))
-        if make_solver(name).abilities.objective:
-            assert solve(INSTANCE, options, name).status == "optimal"
-            return
-        with pytest.raises(InputError, match=f"objective: is more than the solver {name} can do"):
             self.found(name, options)
 
     def test_optimal_schemes(self, name: str) -> None:

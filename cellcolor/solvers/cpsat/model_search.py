@@ -70,14 +70,13 @@ class ModelSearch:
                 break
         else:
             return None
-        costs = self._part.costs
-        built = quota_model(graph, planner, quota, self._part.bound, costs, deadline)
+        built = quota_model(graph, planner, quota, self._part.bound, deadline)
         solver = self._part.runner.single(effort, 0, deadline)
         # Nothing is minimized, and without a linear relaxation CP-SAT is far quicker then.
         solver.parameters.linearization_level = 0
         status = self._part.runner.solve(solver, built.model)
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            self._part.offer(graph, read_painting(graph, built.variables, solver, costs))
+            self._part.offer(graph, read_painting(graph, built.variables, solver))
             return True
         return False if status == cp_model.INFEASIBLE and stage == stages[-1] else None
 
@@ -131,12 +130,11 @@ class ModelSearch:
         if not isinstance(graph, DartGraph):
             self.notes.append(not_built(graph))
             return
-        costs = self._part.costs
         regions = color_regions(self._part.instance, colors)
-        built = full_model(graph, regions, deadline=deadline, costs=costs)
+        built = full_model(graph, regions, deadline=deadline)
         # The known bound as a constraint: a division that meets it ends the search, without the
         # model having to prove the bound again.
-        built.model.add(built.cost >= self._part.bound)
+        built.model.add(built.segments >= self._part.bound)
         self._hint(built, graph)
         solver = self._part.runner.portfolio(None if final else TRIAL_EFFORT, deadline)
         if final:
@@ -146,7 +144,7 @@ class ModelSearch:
         if final and isfinite(solver.best_objective_bound):
             self._proved(solver.best_objective_bound)
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            self._part.offer(graph, read_painting(graph, built.variables, solver, costs))
+            self._part.offer(graph, read_painting(graph, built.variables, solver))
 
     def _proved(self, bound: float) -> None:
         self._part.raise_to(ceil(bound - 1e-6), for_surface=False)

@@ -65,7 +65,7 @@ class PartSearch(PartState):
 
     def cover(self, deadline: Deadline) -> None:
         """A smallest set cover: the first bound, and a division with every cell painted whole."""
-        found = set_cover(self.instance, None, deadline, self.costs)
+        found = set_cover(self.instance, None, deadline)
         self.cover_bound = max(self.bound, found.bound)
         self.planned = found.regions
         self.raise_to(found.bound, for_surface=True)

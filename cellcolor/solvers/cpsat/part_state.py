@@ -16,13 +16,8 @@ from cellcolor.solvers.bounds.cover import Region, color_regions, greedy_strange
 from cellcolor.solvers.bounds.hubs import HubBound
 from cellcolor.solvers.bounds.reductions import enough_crossings
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, widened
-from cellcolor.solvers.cpsat.model.full import cheapest, model_size
-from cellcolor.solvers.cpsat.model.painting import (
-    Block,
-    Painting,
-    canonical,
-    counted,
-)
+from cellcolor.solvers.cpsat.model.full import model_size
+from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, segments_of
 from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.parts import ConnectedPart
 from cellcolor.solvers.cpsat.routes.recoloring import recolor
@@ -47,8 +42,6 @@ class PartState:
         options: of the whole search.
         runner: runs models, until the deadline or an interrupt.
         once: one strand of each live edge, as in the paper.
-        costs: what a segment of each color costs; None for 1 each. With costs, ``segments`` and
-            all bounds are of what the segments cost.
         segments: of the best division.
         bound: no division in the search space has fewer segments.
         surface_bound: no division of the surface has fewer.
@@ -66,7 +59,6 @@ class PartState:
         self.cells = part.cells
         self.colors = tuple(frozenset(cell.colors) for cell in part.instance.cells)
         self.options = options
-        self.costs = options.costs(part.instance)
         self.runner = runner
         self._report = report
         self._enough = enough_crossings(part.instance, self.colors)
@@ -77,9 +69,9 @@ class PartState:
         self.hubs: HubBound | None = None
         self._running: int | None = None
         graph = self.narrow_graph()
-        whole: Painting = [[Block(cheapest(own, self.costs), set())] for own in self.colors]
+        whole: Painting = [[Block(min(own), set())] for own in self.colors]
         self.best = graph, canonical(graph, whole)
-        self.segments = counted(*self.best, self.costs)
+        self.segments = len(segments_of(*self.best))
 
     @cached_property
     def regions(self) -> list[Region]:
@@ -137,7 +129,7 @@ class PartState:
 
     def keep(self, graph: DartGraph, painting: Painting) -> None:
         """The same for a canonical one."""
-        segments = counted(graph, painting, self.costs)
+        segments = len(segments_of(graph, painting))
         if segments < self.segments:
             self.segments, self.best = segments, (graph, painting)
             self._report()

@@ -84,7 +84,6 @@ class Planning:
             self._part.cover_bound,
             self._solve_plan,
             self._part.planned,
-            self._part.costs,
             at_once=not self._part.large,
         )
         self._undecided = True

@@ -8,8 +8,6 @@ segment of the plan (docs/encodings/one-plan.md).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline
@@ -37,7 +35,6 @@ def quota_model(
     planner: Planner,
     quota: Quota,
     segments: int,
-    costs: Sequence[int] | None,
     deadline: Deadline,
 ) -> Model:
     """A model of the divisions with a number of segments that keep to a quota, with no objective.
@@ -47,15 +44,14 @@ def quota_model(
 
     Args:
         graph: in the colors of the quota.
-        segments: no division has fewer, or costs less.
-        costs: what a segment of each color costs; None for 1 each.
+        segments: no division has fewer.
     """
     planned = planner.model_within(quota, segments)
     regions = color_regions(planner.instance, graph.colors)
-    built = full_model(graph, regions, deadline=deadline, costs=costs, model=planned.model)
+    built = full_model(graph, regions, deadline=deadline, model=planned.model)
     model, v = built.model, built.variables
     model.clear_objective()  # type: ignore[no-untyped-call]
-    model.add(built.cost <= segments)
+    model.add(built.segments <= segments)
     region_of: dict[tuple[int, int], Region] = {
         (region[0], cell): region for region in quota for cell in region[1]
     }

@@ -11,14 +11,13 @@ from importlib.metadata import version
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division, Seam, cost_of, count_segments
+from cellcolor.data.solution import Seam, count_segments
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import greedy_strangers
 from cellcolor.solvers.bounds.reductions import LeftOut, drop_dominated, left_out
 from cellcolor.solvers.cpsat.conflict_certificate import conflict_certificate
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
-from cellcolor.solvers.cpsat.model.full import cheapest
 from cellcolor.solvers.cpsat.model.painting import (
     Block,
     Painting,
@@ -52,7 +51,6 @@ class CpSatSolver:
         optimal_schemes=True,
         schemes_of_several_loops=True,
         start=True,
-        objective=True,
     )
 
     def __init__(self, plans: bool = True) -> None:
@@ -95,7 +93,6 @@ class _Search:
         self._instance = instance
         self._options = options
         self._progress = progress
-        self._costs = options.costs(instance)
         self._plans = plans
         self._runner = Runner(options)
         self._loops = instance.live_loops
@@ -120,7 +117,7 @@ class _Search:
         if options.start is not None:
             self._begin_with(options.start)
         deadline.check()
-        self._left_out = left_out(self._instance, deadline, self._costs)
+        self._left_out = left_out(self._instance, deadline)
         colors = drop_dominated(self._instance, self._left_out)
         deadline.check()
         self._parts = [
@@ -138,15 +135,10 @@ class _Search:
         if self._start is not None:
             known, its = self._start
             start = division_of(known, its, self._options.strands)
-            if self._counted(start) < self._counted(division):
+            if count_segments(start) < count_segments(division):
                 graph, division = known, start
         notes = {note for part in self._parts for note in part.models.notes}
         return Answer(division, graph.seams, self._bounds(), tuple(sorted(notes)))
-
-    def _counted(self, division: Division) -> int:
-        """The segments of a division, or what they cost."""
-        costs = self._costs
-        return count_segments(division) if costs is None else cost_of(division, costs)
 
     def _stages(self) -> list[_Stage]:
         """The stages in order, steps 3 to 11 of docs/solver.md.
@@ -216,7 +208,7 @@ class _Search:
         painting = [
             [
                 Block(color, {graph.number_of[name] for name in names})
-                for color, names in found.get(cell, [(cheapest(colors, self._costs), [])])
+                for color, names in found.get(cell, [(min(colors), [])])
             ]
             for cell, colors in enumerate(self._own)
         ]
@@ -227,11 +219,11 @@ class _Search:
         return dart_graph(self._instance, self._own, strands, seams, self._loops)
 
     def _bounds(self) -> tuple[Bound, ...]:
-        """The proved bounds of the number of segments, or of the cost; those of parts add up."""
+        """The proved bounds; those of parts add up."""
         if not self._parts:
             return (Bound("strangers", len(greedy_strangers(self._instance)), "surface"),)
         certificate = conflict_certificate(self._left_out, self._parts)
-        bounds = (
+        return (
             Bound("cover", sum(part.cover_bound for part in self._parts), "surface"),
             Bound(
                 "hubs" if any(part.hubs for part in self._parts) else "conflicts",
@@ -242,15 +234,11 @@ class _Search:
             Bound("crossings", sum(part.proved_for_surface for part in self._parts), "surface"),
             Bound("model", sum(part.bound for part in self._parts), "strands"),
         )
-        if self._costs is None:
-            return bounds
-        strangers = Bound("strangers", len(greedy_strangers(self._instance)), "surface")
-        return (strangers, *(replace(bound, of="cost") for bound in bounds))
 
     def _report(self) -> None:
         if self._progress is None or not self._parts:
             return
         known = sum(part.known for part in self._parts)
         if self._start is not None:
-            known = min(known, self._counted(division_of(*self._start)))
+            known = min(known, count_segments(division_of(*self._start)))
         self._progress(known, sum(part.bound for part in self._parts))

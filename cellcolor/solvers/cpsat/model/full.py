@@ -8,7 +8,7 @@ The callers solve it.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ortools.sat.python import cp_model
@@ -48,16 +48,13 @@ class Model:
         model: the model.
         variables: its variables.
         fixed_roots: cells in which their segment has its root.
-        cost: what is minimised: the number of segments, or what they cost.
-        dearer: per dart and color that costs more than the cheapest of the dart: its segment has
-            its root at the dart, and this color.
+        segments: how many segments there are, which is minimized.
     """
 
     model: cp_model.CpModel
     variables: Variables
     fixed_roots: set[int]
-    cost: cp_model.LinearExprT
-    dearer: dict[tuple[int, int], cp_model.IntVar]
+    segments: cp_model.LinearExprT
 
 
 def model_size(graph: DartGraph) -> float:
@@ -105,15 +102,13 @@ def full_model(
     regions: Sequence[Region],
     groups: Sequence[Group] = DEFINING + REDUNDANT,
     deadline: Deadline = NEVER,
-    costs: Sequence[int] | None = None,
     model: cp_model.CpModel | None = None,
 ) -> Model:
-    """The model that minimizes the number of segments, or what they cost.
+    """The model that minimizes the number of segments.
 
     Args:
         regions: the color regions of the instance, for the set-cover constraint.
         groups: the functions that add its constraints.
-        costs: what a segment of each color costs; None for 1 each.
         model: to add all this to; None for a new one.
     """
     model = cp_model.CpModel() if model is None else model
@@ -121,49 +116,16 @@ def full_model(
     for group in groups:
         deadline.check()
         group(model, graph, variables, regions)
-    cost: cp_model.LinearExprT = sum(variables.root) + sum(variables.alone)
-    dearer: dict[tuple[int, int], cp_model.IntVar] = {}
-    if costs is not None:
-        cost, dearer = _weighed(model, graph, variables, costs)
-    model.minimize(cost)
-    return Model(model, variables, fixed_roots(graph, regions), cost, dearer)
+    segments = sum(variables.root) + sum(variables.alone)
+    model.minimize(segments)
+    return Model(model, variables, fixed_roots(graph, regions), segments)
 
 
-def _weighed(
-    model: cp_model.CpModel, graph: DartGraph, v: Variables, costs: Sequence[int]
-) -> tuple[cp_model.LinearExprT, dict[tuple[int, int], cp_model.IntVar]]:
-    """What the segments cost, and the literals that add to a root what its color costs more.
-
-    A root costs at least what the cheapest color of its dart does, and a cell without a dart in
-    state 1 is painted in its cheapest color.
-    """
-    terms = [
-        min(costs[own] for own in colors) * v.alone[c] for c, colors in enumerate(graph.colors)
-    ]
-    dearer: dict[tuple[int, int], cp_model.IntVar] = {}
-    for number, dart in enumerate(graph.darts):
-        least = min(costs[color] for color in dart.colors)
-        terms.append(least * v.root[number])
-        for color in sorted(dart.colors):
-            if costs[color] > least:
-                literal = dearer[number, color] = model.new_bool_var(f"dearer_{number}_{color}")
-                joined = v.joined[min(number, dart.twin), color]
-                model.add_bool_or([~v.root[number], ~joined, literal])
-                terms.append((costs[color] - least) * literal)
-    return sum(terms), dearer
-
-
-def read_painting(
-    graph: DartGraph,
-    v: Variables,
-    solver: cp_model.CpSolver,
-    costs: Sequence[int] | None = None,
-) -> Painting:
+def read_painting(graph: DartGraph, v: Variables, solver: cp_model.CpSolver) -> Painting:
     """The painting that a solved model has found.
 
-    A cell without darts in state 1 is painted in its first color, or the cheapest. Darts are in
-    state 1 only where the model counts a join. Edges whose join would close a cycle of sub-cells
-    are left unjoined.
+    A cell without darts in state 1 is painted in its first color. Darts are in state 1 only where
+    the model counts a join. Edges whose join would close a cycle of sub-cells are left unjoined.
     """
     color_of: dict[int, int] = {}
     for (edge, color), literal in v.joined.items():
@@ -184,13 +146,8 @@ def read_painting(
             block_of[dart] = Block(color_of[dart], set()) if before is None else block_of[before]
             block_of[dart].darts.add(dart)
         blocks = [b for d, b in block_of.items() if d == min(b.darts)]
-        painting.append(blocks or [Block(cheapest(graph.colors[number], costs), set())])
+        painting.append(blocks or [Block(min(graph.colors[number]), set())])
     return painting
-
-
-def cheapest(colors: Iterable[int], costs: Sequence[int] | None) -> int:
-    """The first of some colors, or of those that cost least."""
-    return min(colors, key=lambda color: (0 if costs is None else costs[color], color))
 
 
 def add_hint(built: Model, graph: DartGraph, painting: Painting) -> None:
@@ -241,9 +198,6 @@ def add_hint(built: Model, graph: DartGraph, painting: Painting) -> None:
     ):
         for literal in literals:
             model.add_hint(literal, literal.index in ones)
-    for (dart, color), literal in built.dearer.items():
-        joined = v.joined[min(dart, graph.darts[dart].twin), color]
-        model.add_hint(literal, v.root[dart].index in ones and joined.index in ones)
     for dart, rank in enumerate(v.rank):
         depth = forest.depth[forest.block_of[dart]] if dart in counted else 0
         model.add_hint(rank, depth)

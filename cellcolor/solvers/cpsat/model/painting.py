@@ -64,34 +64,23 @@ def painting_of(graph: DartGraph, division: Division) -> Painting:
 
 def segments_of(graph: DartGraph, painting: Painting) -> list[set[int]]:
     """The cells that each segment touches."""
-    return [cells for _, cells in colored_segments(graph, painting)]
-
-
-def counted(graph: DartGraph, painting: Painting, costs: Sequence[int] | None) -> int:
-    """The number of segments, or what they cost by color."""
-    found = colored_segments(graph, painting)
-    return len(found) if costs is None else sum(costs[color] for color, _ in found)
-
-
-def colored_segments(graph: DartGraph, painting: Painting) -> list[tuple[int, set[int]]]:
-    """The color of each segment, and the cells that it touches."""
     blocks = [block for cell in painting for block in cell]
     cell_of = [number for number, cell in enumerate(painting) for _ in cell]
     holder = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
     reached = [-1] * len(blocks)
-    segments: list[tuple[int, set[int]]] = []
-    for first, block in enumerate(blocks):
+    segments: list[set[int]] = []
+    for first in range(len(blocks)):
         if reached[first] >= 0:
             continue
         reached[first] = len(segments)
-        segments.append((block.color, {cell_of[first]}))
+        segments.append({cell_of[first]})
         stack = [first]
         while stack:
             for dart in blocks[stack.pop()].darts:
                 other = holder[graph.darts[dart].twin]
                 if reached[other] < 0:
                     reached[other] = reached[first]
-                    segments[-1][1].add(cell_of[other])
+                    segments[-1].add(cell_of[other])
                     stack.append(other)
     return segments
 

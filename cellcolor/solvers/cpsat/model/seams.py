@@ -72,7 +72,7 @@ class Drawings:
         if size > LARGEST_MODEL:
             raise TooLarge(not_built(size))
         built = full_model(small, color_regions(alone))
-        built.model.add(built.cost <= segments)
+        built.model.add(built.segments <= segments)
         _, status = self._solve(built.model)
         if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE, cp_model.INFEASIBLE):
             raise OutOfTime("there was no time to draw the sub-cells of a cell")

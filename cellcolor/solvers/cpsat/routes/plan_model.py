@@ -111,15 +111,14 @@ class PlanCells:
 
 
 class PlanModel:
-    """The model of plans with an exact number of segments, or of those that cost no more than that.
+    """The model of plans with an exact number of segments.
 
     Args:
         cells: the merged cells.
-        segments: how many segments a plan has, or what they may cost.
+        segments: how many segments a plan has.
         copies: how many segments of each region the plan tells apart.
         most: how many segments each region may have at most, as many as its copies or more.
         last: the segments of the last plan with the kinds that they touch, as a hint.
-        prices: what a segment in each region costs; None where segments are counted.
 
     Attributes:
         model: the model.
@@ -135,7 +134,6 @@ class PlanModel:
         copies: Sequence[int],
         most: Sequence[int],
         last: Mapping[SegmentName, set[int]],
-        prices: Sequence[int] | None = None,
     ) -> None:
         self.model = cp_model.CpModel()
         self.in_use: dict[SegmentName, cp_model.IntVar] = {}
@@ -145,12 +143,7 @@ class PlanModel:
         self._copies = copies
         self._touching: dict[tuple[SegmentName, frozenset[int]], cp_model.IntVar] = {}
         self._add_segments(last)
-        used = [(region, own) for (region, _), own in self.in_use.items()]
-        used += self._further(most)
-        if prices is None:
-            self.model.add(sum(own for _, own in used) == segments)
-        else:
-            self.model.add(sum(prices[region] * own for region, own in used) <= segments)
+        self.model.add(sum(self.in_use.values()) + sum(self._further(most)) == segments)
         self._add_cover()
         for one, other in cells.parted:
             self._add_partings(one, other)
@@ -182,7 +175,7 @@ class PlanModel:
                 model.add_implication(literal, own)
                 model.add_hint(literal, kind in last.get(segment, ()))
 
-    def _further(self, most: Sequence[int]) -> Iterator[tuple[int, cp_model.IntVar]]:
+    def _further(self, most: Sequence[int]) -> Iterator[cp_model.IntVar]:
         """How many segments each region has besides its copies, which then are all in use."""
         for region, own in enumerate(self._copies):
             if own < most[region]:
@@ -193,7 +186,7 @@ class PlanModel:
                 self.model.add(further >= 1).only_enforce_if(literal)
                 self.model.add_hint(literal, False)
                 self.model.add_hint(further, 0)
-                yield region, further
+                yield further
 
     def _beyond(self, *regions: int) -> list[cp_model.IntVar]:
         """Literals of which one is true if one of the regions has more segments than copies."""

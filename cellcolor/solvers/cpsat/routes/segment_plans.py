@@ -103,8 +103,6 @@ class Planner:
         fewest: the size of a smallest cover: as few regions can touch every cell, not fewer.
         solve: runs a model with a seed, within limits.
         cover: color regions that touch every cell, a hint for the first plan.
-        costs: what a segment of each color costs; None for 1 each. With costs, ``fewest`` is what a
-            cheapest cover costs.
         at_once: whether all segments of a region are told apart from the beginning. With few cells
             that is decided sooner; with many the model would be too large.
 
@@ -119,10 +117,8 @@ class Planner:
         fewest: int,
         solve: SolveWithSeed,
         cover: Sequence[Region] = (),
-        costs: Sequence[int] | None = None,
         at_once: bool = False,
     ) -> None:
-        self._prices = None if costs is None else [costs[color] for color, _ in regions]
         self.instance = instance
         self._regions = regions
         self._fewest = fewest
@@ -157,8 +153,7 @@ class Planner:
         """A plan with an exact number of segments that respects all partings and tangles so far.
 
         Args:
-            segments: how many; at least as many as a smallest cover has. With costs, what they may
-                cost together.
+            segments: how many; at least as many as a smallest cover has.
             seed: other seeds give other plans, if there are several.
             thoroughly: whether to accept far more partings before giving up, which takes longer.
             refused: the plan keeps to none of these quotas.
@@ -170,13 +165,12 @@ class Planner:
             Undecided: the model would be too large, or the solver's limits came first.
         """
         # Without the segments of a region but one, the segments are still a cover.
-        spare = segments - self._fewest
-        most = [spare // price + 1 for price in self._prices or [1] * len(self._regions)]
+        most = [segments - self._fewest + 1] * len(self._regions)
         cells = PlanCells(self._merged_cells_of, self._parted_cells(), self._tangles)
         while True:
             copies = list(map(min, self._copies, most))
             self._refuse_large(cells, copies, thoroughly)
-            built = PlanModel(cells, segments, copies, most, self._last, self._prices)
+            built = PlanModel(cells, segments, copies, most, self._last)
             for quota in refused:
                 built.refuse({self._number[region]: number for region, number in quota.items()})
             model, touched = built.model, built.touched
@@ -211,7 +205,7 @@ class Planner:
         """
         cells = PlanCells(self._merged_cells_of, self._parted_cells(), self._tangles)
         copies = [quota.get(region, 0) for region in self._regions]
-        built = PlanModel(cells, segments, copies, copies, self._last, self._prices)
+        built = PlanModel(cells, segments, copies, copies, self._last)
 
         def touching(region: Region, cell: int) -> list[cp_model.IntVar] | None:
             number = self._number[region]
@@ -245,8 +239,8 @@ class Planner:
     def quota(self) -> Quota:
         """How many segments each color region has in the last plan.
 
-        Together they are as many as were asked for, or cost no more. The plan itself leaves out
-        segments for which no cell is left.
+        Together they are as many as were asked for. The plan itself leaves out segments for which
+        no cell is left.
         """
         return Counter(self._regions[region] for region, _ in self._last)
 
