@@ -8,7 +8,6 @@ from cellcolor.data.coverage import Coverage as Coverage
 from cellcolor.data.instance import Instance as Instance
 from cellcolor.data.joint_plan import ContactPath as ContactPath
 from cellcolor.data.joint_plan import JointPlan as JointPlan
-from cellcolor.data.objective import Objective as Objective
 from cellcolor.data.plan import Plan as Plan
 from cellcolor.data.solution import CellDivision as CellDivision
 from cellcolor.data.solution import Solution as Solution

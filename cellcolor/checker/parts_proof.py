@@ -35,7 +35,7 @@ from cellcolor.data.bound_kinds import (
 
 
 def verify_cells(proof: Proof, certificate: CertifiedCells, value: int) -> None:
-    """Verify that fewer color regions, or cheaper ones, do not touch all of the cells."""
+    """Verify that fewer color regions do not touch all of the cells."""
     _verify(proof, (CertifiedPart(value, certificate.cells),), value)
 
 
@@ -61,8 +61,6 @@ def _leave_out(proof: Proof, steps: Sequence[tuple[int, int, int]]) -> None:
                 if within and color in joinable and stand_in not in joinable:
                     text = f"color {stand_in} does not continue across edge {abs(dart)}"
                     raise Refused(f"{text}, where color {color} does")
-        if proof.costs is not None and proof.costs[stand_in] > proof.costs[color]:
-            raise Refused(f"color {stand_in} costs more than color {color}")
         if stand_in == color:
             raise Refused(f"color {color} cannot stand in for itself")
         for own in cells:
@@ -87,19 +85,14 @@ def _verify(proof: Proof, parts: Sequence[CertifiedPart], value: int) -> None:
             demands, saved = _beside_hubs(proof, part)
             pieces += saved
         left = proof.budget - proof.tried
-        # Pieces beside hubs are counted; segments cost no less than their number.
-        costs = None if part.hubs else proof.costs
-        search = PlanSearch(demands, conflicts, left, proof.deadline, tangles, costs)
+        search = PlanSearch(demands, conflicts, left, proof.deadline, tangles)
         try:
             possible = search.is_possible(pieces - 1)
         finally:
             proof.tried += search.tried
         if possible:
             what = "segments" if part.conflicts or part.tangles else "color regions"
-            least = f"fewer than {pieces} {what}"
-            if costs is not None:
-                least = f"{what} that cost less than {pieces}"
-            raise Refused(f"{least} touch all of the cells {few(part.cells)}")
+            raise Refused(f"fewer than {pieces} {what} touch all of the cells {few(part.cells)}")
 
 
 def _beside_hubs(

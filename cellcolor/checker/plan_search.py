@@ -1,4 +1,4 @@
-"""Whether some number of segments, or some cost, is enough to touch some cells: tries everything.
+"""Whether some number of segments is enough to touch some cells: tries everything.
 
 A segment lies in one color region, and touches some of its cells. Two segments that are in
 conflict cannot both touch all that the conflict names. Those of a tangle cannot all touch what it
@@ -92,7 +92,7 @@ class _Needed:
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """Some segments, the cells left to be touched, and what further segments may cost together."""
+    """Some segments, the cells left to be touched, and how many further segments there may be."""
 
     found: tuple[_Segment, ...]
     left: tuple[int, ...]
@@ -109,17 +109,14 @@ class PlanSearch:
         budget: int,
         deadline: Deadline = NEVER,
         tangles: Sequence[Tangle] = (),
-        costs: Sequence[int] | None = None,
     ) -> None:
         """
         Args:
             regions: the color regions that each cell lies in; these cells have to be touched.
             budget: how many choices may be tried.
-            costs: what a segment of each color costs, 1 or more; None for 1 each.
         """
         self.tried = 0
         self._regions = regions
-        self._costs = costs
         self._budget = budget
         self._deadline = deadline
         self._in_conflict = {conflict.regions for conflict in conflicts}
@@ -149,7 +146,7 @@ class PlanSearch:
             self._tangles.append(needed)
 
     def is_possible(self, segments: int) -> bool:
-        """Whether this many segments, or segments of this cost, can touch all cells.
+        """Whether this many segments can touch all cells.
 
         Raises:
             BudgetExceeded: too many choices have been tried.
@@ -271,7 +268,7 @@ class PlanSearch:
             self._count(len(rest))
             ends = self._ends.get((region, cell), (0, 0, 0, 0))
             opening = _Segment(region, ends, self._places.get((region, cell), 0))
-            yield _State((*found, opening), rest, more - self._cost(region))
+            yield _State((*found, opening), rest, more - 1)
 
     def _able_to_touch(self, state: _State) -> dict[int, list[tuple[int, _Segment]]]:
         """For each cell the numbers of the segments that can touch it, and each as it is then."""
@@ -306,18 +303,11 @@ class PlanSearch:
             raise BudgetExceeded
 
     def _need_segments_of_their_own(self, cells: Sequence[int]) -> int:
-        """How many of the cells need a segment each: no two of them are in one color region.
-
-        If segments have costs, it is the cost of the cheapest regions of these cells.
-        """
+        """How many of the cells need a segment each: no two of them are in one color region."""
         used: set[ColorRegion] = set()
         count = 0
         for cell in sorted(cells, key=lambda cell: len(self._regions[cell])):
             if used.isdisjoint(self._regions[cell]):
                 used |= self._regions[cell]
-                count += 1 if self._costs is None else min(map(self._cost, self._regions[cell]))
+                count += 1
         return count
-
-    def _cost(self, region: ColorRegion) -> int:
-        """What a segment in a color region costs."""
-        return 1 if self._costs is None else self._costs[region[0]]

@@ -22,7 +22,6 @@ class Proof:
     Attributes:
         regions: the color regions that each cell lies in, without those that were left out.
         budget: how many choices may be tried. The deadline ends them in the same way.
-        costs: what a segment of each color costs; None for 1 each.
         tried: choices so far.
     """
 
@@ -32,13 +31,11 @@ class Proof:
         regions: Sequence[frozenset[ColorRegion]],
         budget: int,
         deadline: Deadline,
-        costs: Sequence[int] | None = None,
     ) -> None:
         self.instance = instance
         self.regions = list(regions)
         self.budget = budget
         self.deadline = deadline
-        self.costs = costs
         self.tried = 0
 
     def count(self, choices: int = 1) -> None:

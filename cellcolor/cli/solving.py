@@ -23,7 +23,6 @@ from cellcolor.cli.progress import progress_of, scheme_progress_of
 from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solution
 from cellcolor.cli.terminal import apart_from, complain, print_json, say, unheard
 from cellcolor.data.instance import Instance
-from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
 from cellcolor.data.schemes import scheme_line
 from cellcolor.data.solution import Division, SearchSpace, Solution
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
@@ -83,8 +82,6 @@ class Request:
     left_alone: Place | None
     tolerance: str | None
     every: bool
-    fewest_cuts: bool
-    objective: Objective | None
     warm_start: Path | None
     limit: int | None
     diverse: int | None
@@ -114,8 +111,6 @@ class Request:
             deadline=deadline,
             workers=self.workers,
             seed=self.seed,
-            fewest_cuts=self.fewest_cuts,
-            objective=self.objective or FEWEST_SEGMENTS,
         )
 
 
@@ -187,7 +182,6 @@ def _told(request: Request, file: Path, result: Result) -> Exit:
     return Exit.done_if(
         solution.status == "optimal"
         and solution.complete is not False
-        and solution.cutting_paths == solution.cutting_paths_lower_bound
         and (refinement is None or refinement.stable)
     )
 
@@ -198,8 +192,7 @@ def _check_able(request: Request) -> None:
     What every solver can do is not asked about: bad input has to import no solver.
     """
     start = request.warm_start is not None
-    able = request.search_space == "paper" and request.objective is None
-    if request.every or start or request.fewest_cuts or not able:
+    if request.every or start or request.search_space != "paper":
         from cellcolor.solvers.checked import check_able
 
         try:
@@ -260,8 +253,6 @@ def _solve(file: Path, target: Path | None, request: Request, deadline: Deadline
             time_limit=deadline,
             workers=request.workers,
             seed=request.seed,
-            fewest_cuts=request.fewest_cuts,
-            objective=request.options().objective,
             start=request.warm_start,
             cover=request.cover,
             required=request.required,

@@ -56,7 +56,6 @@ COVER = BoundKind(
     "It holds for the number of segments, also where only the cells of its certificate have to be "
     "covered.",
     CertifiedCells,
-    "cheaper color regions cannot touch every cell",
 )
 
 
@@ -196,13 +195,11 @@ CONFLICTS = BoundKind(
     "fewer segments would have to cross each other",
     EVERY_CELL,
     CertifiedParts,
-    "cheaper segments would have to cross each other",
 )
 HUBS = BoundKind(
     "more connections do not fit side by side into cells with many edges",
     EVERY_CELL,
     CertifiedParts,
-    "more connections do not fit side by side into cells with many edges",
 )
 
 
@@ -212,27 +209,23 @@ _STRANDS = (
 )
 
 
-_NOTHING_BETTER = "the full model has nothing better, and more strands would be of no use"
-
-
-_UNKNOWN = BoundKind(because_of_cost="")
-
-
 KINDS = {
     "strangers": STRANGERS,
     "cover": COVER,
     "conflicts": CONFLICTS,
     "hubs": HUBS,
-    "crossings": BoundKind(_NOTHING_BETTER, EVERY_CELL, because_of_cost=_NOTHING_BETTER),
-    "model": BoundKind("", _STRANDS, because_of_cost=""),
-    "search": BoundKind("", _STRANDS, because_of_cost=""),
+    "crossings": BoundKind(
+        "the full model has nothing better, and more strands would be of no use", EVERY_CELL
+    ),
+    "model": BoundKind("", _STRANDS),
+    "search": BoundKind("", _STRANDS),
 }
 """What cellcolor writes. A bound may be of another kind: it is kept, and taken on trust."""
 
 
 def kind_of(bound: Bound) -> BoundKind:
     """The kind of a bound; of one that is not known nothing is said."""
-    return KINDS.get(bound.kind, _UNKNOWN)
+    return KINDS.get(bound.kind, BoundKind())
 
 
 def certificate_of(bound: Bound) -> Certificate | None:

@@ -24,28 +24,23 @@ from cellcolor.files.validation import json_content, settle
 Extent = Literal["surface", "strands"]
 """What a bound holds for: any division of the surface, or those with the solution's strands."""
 
-Bounded = Literal["segments", "cost"]
-"""What a bound is one of: the number of segments, or what they cost (``Objective``)."""
-
 
 @dataclass(frozen=True, slots=True)
 class Bound(Value):
-    """No division of some kind has fewer segments than this, or none costs less.
+    """No division of some kind has fewer segments than this.
 
     Attributes:
         kind: how it was proved; docs/formats.md has the kinds that cellcolor writes.
-        value: the number of segments, or what they cost.
+        value: the number of segments.
         holds_for: ``surface`` for any division of the physical surface, ``strands`` for those
             that the solution's strands allow (in the search space ``paper``: its divisions).
         certificate: what a checker without a solver can verify, if there is one.
-        of: ``segments`` for their number, ``cost`` for what the solution's objective sums up.
     """
 
     kind: str
     value: NonNegativeInt
     holds_for: Extent
     certificate: dict[str, Any] | None = field(default=None, hash=False)
-    of: Bounded = "segments"
 
     def __post_init__(self) -> None:
         settle(self)
@@ -55,8 +50,7 @@ class Bound(Value):
 
     def __str__(self) -> str:
         extent = "any division of the surface" if self.holds_for == "surface" else "these strands"
-        least = count(self.value, "segment") if self.of == "segments" else f"cost {self.value}"
-        return f"at least {least} for {extent}, by {self.kind}"
+        return f"at least {count(self.value, 'segment')} for {extent}, by {self.kind}"
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
@@ -65,23 +59,17 @@ class Bound(Value):
             "value": self.value,
             "holds_for": self.holds_for,
         }
-        if self.of != "segments":
-            document["of"] = self.of
         if self.certificate is not None:
             document["certificate"] = self.certificate
         return document
 
 
-def greatest(bounds: Sequence[Bound], extent: Extent, of: Bounded = "segments") -> int:
+def greatest(bounds: Sequence[Bound], extent: Extent) -> int:
     """The greatest bound for an extent, 0 if there is none.
 
-    What holds for any division of the surface holds for those with strands as well. No segment
-    costs less than 1, so a bound of their number is one of their cost.
+    What holds for any division of the surface holds for those with strands as well.
     """
-    own = (
-        b.value for b in bounds if b.holds_for in ("surface", extent) and b.of in ("segments", of)
-    )
-    return max(own, default=0)
+    return max((b.value for b in bounds if b.holds_for in ("surface", extent)), default=0)
 
 
 EVERY_CELL = "It holds for the number of segments, where every cell has to be covered."
@@ -178,14 +166,11 @@ class BoundKind:
             solution's strands only.
         objective: what it bounds, and what has to be covered for that, a sentence.
         certificate: what a bound of this kind can be verified by; None if it is taken on trust.
-        because_of_cost: why no division costs less, a clause, empty as ``because`` is; None if no
-            bound of this kind is one of costs.
     """
 
     because: str = ""
     objective: str = ""
     certificate: type[Certificate] | None = None
-    because_of_cost: str | None = None
 
     def __str__(self) -> str:
         because = f"{self.because[:1].upper()}{self.because[1:]}. " if self.because else ""

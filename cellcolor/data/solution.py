@@ -12,11 +12,10 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveInt
 
 from cellcolor.data.bound_kinds import certificate_of, kind_of
-from cellcolor.data.bounds import Bound, greatest
+from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import DartName, twin
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance
-from cellcolor.data.objective import Objective
 from cellcolor.data.value import Document, Value, adapter_of
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError, naming
@@ -67,16 +66,6 @@ Division = tuple[CellDivision, ...]
 def count_segments(division: Division) -> int:
     """The number of segments of a division with numbered segments."""
     return len({sub.segment for cell in division for sub in cell.subcells})
-
-
-def cost_of(division: Division, costs: Sequence[int]) -> int:
-    """What the segments of a division with numbered segments cost.
-
-    Args:
-        costs: what a segment of each color costs.
-    """
-    colors = {sub.segment: sub.color for cell in division for sub in cell.subcells}
-    return sum(costs[color] for color in colors.values())
 
 
 SchemeKey = tuple[frozenset[tuple[int, frozenset[DartName]]], ...]
@@ -141,8 +130,7 @@ class Solution(Document):
         search_space: ``paper`` or ``surface``.
         strands: strands per topological edge; 1 in ``paper``.
         solver: the solver's name.
-        status: ``optimal`` (the fewest segments, or the least cost where there is an objective, are
-            proved in the search space), ``feasible`` or ``unknown``.
+        status: ``optimal`` (proved in the search space), ``feasible`` or ``unknown``.
         segments: number of segments, None when no division was found.
         lift_offs: ``max(0, segments - 1)``, None when no division was found.
         lower_bound: no division in the search space has fewer segments.
@@ -153,28 +141,17 @@ class Solution(Document):
         seconds: wall-clock time spent solving.
         schemes: with "all optimal schemes" asked for, how many were found.
         complete: with "all optimal schemes" asked for, whether that is all of them.
-        cutting_paths: with "fewest cutting paths" asked for, how many the division has.
-        cutting_paths_lower_bound: with "fewest cutting paths" asked for, no division in the search
-            space with as few segments has fewer.
+        cutting_paths: in older solutions that have it, how many the division has.
+        cutting_paths_lower_bound: in older solutions that have it, no division in the search space
+            with as few segments has fewer.
         bounds: how ``lower_bound`` and ``surface_lower_bound`` were proved, each the greatest of
             its kind in here; None where that is not said, as in files of version 1.
         coverage: the instance's, so that the solution alone gives the shares.
         notes: what was left out and why, a sentence each.
-        objective: what was minimised; None for the number of segments.
-        cost: with an objective, what the segments of the division cost; None without a division.
-        cost_lower_bound: with an objective, no division in the search space costs less.
     """
 
     FORMAT = "cellcolor/solution"
-    SINCE_VERSION_2 = (
-        "bounds",
-        "coverage",
-        "notes",
-        "instance.of",
-        "objective",
-        "cost",
-        "cost_lower_bound",
-    )
+    SINCE_VERSION_2 = ("bounds", "coverage", "notes", "instance.of")
 
     instance: InstanceReference
     search_space: SearchSpace
@@ -196,9 +173,6 @@ class Solution(Document):
     bounds: tuple[Bound, ...] | None = None
     coverage: Coverage | None = None
     notes: tuple[str, ...] = ()
-    objective: Objective | None = None
-    cost: NonNegativeInt | None = None
-    cost_lower_bound: NonNegativeInt | None = None
 
     def __post_init__(self) -> None:
         settle(self)
@@ -217,10 +191,6 @@ class Solution(Document):
             )
         if self.status != "unknown" and missing:
             raise InputError(None, missing[0], f"must not be null in a result {self.status!r}")
-        if (self.objective is None) != (self.cost_lower_bound is None):
-            raise InputError(None, "cost_lower_bound", "goes with objective")
-        if (self.objective is None or self.cells is None) != (self.cost is None):
-            raise InputError(None, "cost", "goes with objective and cells")
 
     @property
     def witness(self) -> tuple[int, ...]:
@@ -234,8 +204,7 @@ class Solution(Document):
         if self.proved_for_surface and 1 < wanted <= _MOST_WITNESSES:
             for bound in self.bounds or ():
                 with suppress(InputError):  # a certificate that says nothing
-                    proving = bound.of == "segments" and bound.value == wanted
-                    certificate = certificate_of(bound) if proving else None
+                    certificate = certificate_of(bound) if bound.value == wanted else None
                     if certificate is not None and (cells := certificate.witness(wanted)):
                         return cells
         return ()
@@ -246,13 +215,6 @@ class Solution(Document):
 
         None where nothing needs a reason (a single segment) or none is given in the self.
         """
-        if self.objective is not None:
-            proving = (
-                kind_of(bound).because_of_cost or None
-                for bound in self.bounds or ()
-                if (bound.holds_for, bound.of, bound.value) == ("surface", "cost", self.cost)
-            )
-            return next(proving, None)
         if not self.proved_for_surface or (self.segments or 0) < 2:
             return None
         for bound in self.bounds or ():
@@ -272,8 +234,6 @@ class Solution(Document):
                 return "no division: no point of the surface can be covered"
             return f"no division found; at least {count(self.lower_bound, 'segment')}"
         found = f"{count(self.segments, 'segment')}, {count(self.lift_offs, 'lift-off')}"
-        if self.objective is not None:
-            return f"{found}, {self._cost_in_words()}"
         if self.proved_for_surface:
             reason = reason or self.reason
             because = "" if reason is None else f", because {reason}"
@@ -284,27 +244,6 @@ class Solution(Document):
         return (
             f"{found}, not proved to be the fewest: at least {self.lower_bound} in the search "
             f"space {self.search_space}; {everywhere}"
-        )
-
-    @property
-    def cost_surface_lower_bound(self) -> int:
-        """With an objective, no division of the physical surface costs less."""
-        return greatest(self.bounds or (), "surface", "cost")
-
-    def _cost_in_words(self) -> str:
-        """The cost, and what is proved of it."""
-        surface = self.cost_surface_lower_bound
-        if self.cost == surface:
-            because = "" if self.reason is None else f", because {self.reason}"
-            return f"cost {self.cost}, optimal: proved for any division of the surface{because}"
-        everywhere = f"any division of the surface costs at least {surface}"
-        if self.status == "optimal":
-            return (
-                f"cost {self.cost}, optimal in the search space {self.search_space}; {everywhere}"
-            )
-        return (
-            f"cost {self.cost}, not proved to be the least: at least {self.cost_lower_bound} in "
-            f"the search space {self.search_space}; {everywhere}"
         )
 
     def __str__(self) -> str:
@@ -329,10 +268,6 @@ class Solution(Document):
             "surface_lower_bound": self.surface_lower_bound,
             "proved_for_surface": self.proved_for_surface,
         }
-        if self.objective is not None:
-            document["objective"] = {"segments": dict(self.objective.segments)}
-            document["cost"] = self.cost
-            document["cost_lower_bound"] = self.cost_lower_bound
         if self.instance.of != "graph":
             document["instance"]["of"] = self.instance.of
         if self.bounds is not None:

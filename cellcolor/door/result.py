@@ -26,8 +26,8 @@ class GapStep(NamedTuple):
 
     Attributes:
         seconds: since the search began.
-        segments: of the best division by then, or what it costs; None before there was one.
-        lower_bound: no division in the search space has fewer, or costs less.
+        segments: of the best division by then; None before there was one.
+        lower_bound: no division in the search space has fewer.
     """
 
     seconds: float

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cellcolor.data.objective import Objective
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.extras import extras_for
 from cellcolor.door.painting import paint
@@ -18,6 +17,7 @@ from cellcolor.door.planning import plan
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Subject, scene_or_file
 from cellcolor.errors import InputError
+from cellcolor.questions.front import check_price
 from cellcolor.questions.placements import PlacedMinimum, Placements, Pose
 from cellcolor.questions.set_ups import SetUpPlan
 
@@ -130,7 +130,8 @@ def setups(
     """
     if not 0 <= cover <= 1:
         raise InputError(None, "cover", f"must be from 0 to 1, is {cover:g}")
-    objective = Objective(change_over=change_over)
+    if change_over is not None:
+        check_price("change_over", change_over, 1.0)
     deadline = Deadline.of(time_limit)
     poses = _poses(at)
     given = [scene_or_file(one) for one in (scene, *others)]
@@ -143,7 +144,7 @@ def setups(
     building, by_hand = deadline.share(_FOR_BUILDING), not isinstance(at, Placements)
     found = candidates_of(scenes, poses, building, progress, by_hand=by_hand)
     options = Options(deadline=deadline, workers=workers, seed=seed)
-    answer = plan_of(found, cover, objective, options, progress)
+    answer = plan_of(found, cover, change_over, options, progress)
     return ChosenSetUps(answer, tuple(found.scenes[one.number - 1] for one in answer.set_ups))
 
 

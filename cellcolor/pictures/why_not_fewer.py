@@ -43,7 +43,7 @@ def draw_why(
         InputError: no certificate of the solution proves more than one segment.
     """
     proved = [v.bound for v in verdicts if v.outcome == "verified" and v.bound.value > 1]
-    surface_bounds = [b for b in proved if (b.holds_for, b.of) == ("surface", "segments")]
+    surface_bounds = [b for b in proved if b.holds_for == "surface"]
     bound = max(surface_bounds, key=lambda bound: bound.value, default=None)
     certificate = None if bound is None else certificate_of(bound)
     if bound is None or certificate is None:

@@ -22,7 +22,6 @@ import numpy as np
 from ortools.sat.python import cp_model
 
 from cellcolor.data.cells_and_edges import OUTSIDE
-from cellcolor.data.objective import Objective
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
@@ -114,7 +113,7 @@ def side_by_side(
 def choose(
     surfaces: Sequence[LabelledSurface],
     cover: float,
-    objective: Objective,
+    change_over: float | None,
     options: Options,
     progress: Callable[[str], None] | None = None,
 ) -> Choice:
@@ -123,15 +122,16 @@ def choose(
     Args:
         surfaces: of each set-up that may be used, all on one mesh.
         cover: the share that has to be covered of the area that any of them reaches, 0 to 1.
-        objective: what a change-over costs.
+        change_over: what a change from one set-up to the next costs, in lift-offs, 1 or more, since
+            it takes a lift-off. None for the fewest set-ups first, whatever that costs.
         options: deadline, workers and seed; the search space is ``paper``.
 
     Raises:
-        InputError: nothing is reached, or the objective asks for something else as well.
+        InputError: nothing is reached.
         OutOfTime: the deadline came before there was any choice.
     """
-    objective.allow("change_over")
-    in_turn = objective.change_over is None  # set-ups first, then segments
+    in_turn = change_over is None  # set-ups first, then segments
+    extra = 0.0 if change_over is None else change_over - 1  # beyond the lift-off that it takes
     report = progress or (lambda _: None)
     asked = _Asked(surfaces, cover, options)
     report("the fewest set-ups")
@@ -139,10 +139,10 @@ def choose(
     sets = asked.sets_of(fewest) if in_turn else None
     if sets is None:
         number = fewest if in_turn else None
-        masters = [_Master(asked, range(len(surfaces)), objective, number)]
+        masters = [_Master(asked, range(len(surfaces)), extra, number)]
     else:
         report(f"{len(sets)} sets of {fewest}")
-        masters = [_Master(asked, set_ups, objective) for set_ups in sets]
+        masters = [_Master(asked, set_ups, extra) for set_ups in sets]
     best: Choice | None = None
     cost, tried = np.inf, 0
     queue = [(0.0, place) for place in range(len(masters))]  # by what each costs at least
@@ -167,7 +167,7 @@ def choose(
             solved, needed = asked.solved(chosen)
             masters[place].learn(chosen, needed)
             if solved is not None:
-                own = objective.total(solved.solution.segments or 0, 0.0, len(solved.set_ups))
+                own = (solved.solution.segments or 0) + extra * len(solved.set_ups)
                 if own < cost:
                     best, cost = solved, own
     except OutOfTime:
@@ -176,7 +176,7 @@ def choose(
     if best is None:
         raise OutOfTime
     proved = queue[0][0] >= cost - _SAME
-    least = queue[0][0] - objective.total(0, 0.0, len(best.set_ups))
+    least = queue[0][0] - extra * len(best.set_ups)
     return replace(
         best,
         fewest_set_ups=fewest,
@@ -321,7 +321,7 @@ class _Master:
         self,
         asked: _Asked,
         set_ups: Collection[int],
-        objective: Objective,
+        extra: float,
         number: int | None = None,
     ) -> None:
         """A model that is not built before it is asked.
@@ -329,11 +329,11 @@ class _Master:
         Args:
             asked: the regions.
             set_ups: those that may be used.
-            objective: what a change-over costs.
+            extra: what a change-over costs beyond the lift-off that it takes.
             number: of set-ups to be used; None for any.
         """
         self._asked, self._set_ups, self._number = asked, set_ups, number
-        self._extra = round(objective.total(0, 0.0, 1) * _PRICE_UNIT)
+        self._extra = round(extra * _PRICE_UNIT)
         self._model: cp_model.CpModel | None = None
         self.least = 0.0
         """No choice costs less, in segments and in what change-overs cost beyond one each."""

@@ -8,7 +8,6 @@ from math import inf
 from typing import Any
 
 from cellcolor.data.instance import Instance
-from cellcolor.data.objective import Objective
 from cellcolor.data.solution import Solution
 from cellcolor.data.wording import count, lift_offs_of
 from cellcolor.errors import InputError
@@ -84,6 +83,16 @@ class FrontPoint:
         }
 
 
+def check_price(name: str, price: float, least: float = 0.0) -> None:
+    """Refuse a price that is too low or no number.
+
+    Raises:
+        InputError: it is; names the price.
+    """
+    if not least <= price < inf:
+        raise InputError(None, name, f"must be a number from {least:g} on, is {price:g}")
+
+
 @dataclass(frozen=True, eq=False)
 class FrontChoice:
     """The point of a front that answers a question best.
@@ -155,17 +164,18 @@ class Front:
                 return point
         raise InputError(None, "share", f"no division is known that covers {100 * share:g} %")
 
-    def cheapest(self, objective: Objective) -> FrontChoice:
+    def cheapest(self, uncovered_price: float) -> FrontChoice:
         """The least sum of lift-offs and of what is left uncovered, and whether none is less.
 
         Args:
-            objective: its ``uncovered_price`` is of all that can be covered.
+            uncovered_price: what it costs to leave out all that can be covered, in lift-offs; a
+                share of it costs that share.
 
         Raises:
-            InputError: it asks for something else as well, or nothing is known.
+            InputError: the price is negative or no number, or nothing is known.
         """
-        objective.allow("uncovered_price")
-        return self._cheapest(lambda lift_offs, share: objective.total(lift_offs, 1 - share))
+        check_price("uncovered_price", uncovered_price)
+        return self._cheapest(lambda lift_offs, share: lift_offs + uncovered_price * (1 - share))
 
     def fewest_for(self, share: float) -> FrontChoice:
         """The fewest lift-offs that cover a share, and whether it is proved that no fewer do.
@@ -187,8 +197,7 @@ class Front:
         Raises:
             InputError: the price is negative or no number, or the graph has no areas.
         """
-        if not 0 <= lift_off_cm2 < inf:
-            raise InputError(None, "price", f"must be a number from 0 on, is {lift_off_cm2:g}")
+        check_price("price", lift_off_cm2)
         if any(cell.area is None for cell in self.instance.cells):
             raise InputError(None, "price", "is one of area, and the cells of this graph have none")
         whole = _CM2 * self.weight

@@ -233,6 +233,10 @@ CLAIMS = {
         PAPER / "ring.json",
         document(SOLUTION, put("version", to=3), "version"),
     ),
+    "solution with an objective, as an older version wrote it": (
+        PAPER / "ring.json",
+        Bad(json.dumps(SOLUTION | {"objective": {"segments": {"red": 3}}}), "objective"),
+    ),
     "solution with null segments": (
         PAPER / "ring.json",
         document(SOLUTION, put("segments", to=None), "segments"),
@@ -275,7 +279,6 @@ USAGE = {
     "time that is not a number": ["solve", RING, "--time-limit", "nan"],
     "no workers": ["solve", RING, "--workers", "0"],
     "negative seed": ["solve", RING, "--seed", "-1"],
-    "fewest cuts with dfs": ["solve", RING, "--solver", "dfs", "--fewest-cuts"],
     "warm start with dfs": ["solve", RING, "--solver", "dfs", "--warm-start", RING],
     "warm start of two": ["solve", RING, RING, "--warm-start", RING],
     "build without output": ["build", str(PAPER / "ring.surface.json")],

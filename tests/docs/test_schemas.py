@@ -8,6 +8,7 @@ import json
 import sys
 import tomllib
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -77,7 +78,7 @@ def written() -> list[Document]:
     """One document of each format, as this package writes it, with the optional members."""
     instance = Instance.read(PAPER / "split-cell.json")
     surface = LabelledSurface.read(PAPER / "crack-partial.surface.json")
-    paper = solve(instance, Options(fewest_cuts=True))
+    paper = replace(solve(instance, Options()), cutting_paths=0, cutting_paths_lower_bound=0)
     strands = solve(Instance.read(PAPER / "annulus.json"), Options("surface"))
     schemes = enumerate_schemes(instance, Options(), "dfs", paper.segments or 0)
     plan = Plan(tuple(min(colors, default=None) for colors in surface.vertex_colors))

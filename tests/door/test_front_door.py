@@ -45,7 +45,6 @@ PUBLIC = [
     "JointPlan",
     "LabelledSurface",
     "Leeway",
-    "Objective",
     "Oracle",
     "OutOfTime",
     "Painted",

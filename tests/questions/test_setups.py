@@ -18,7 +18,6 @@ from shipped import shipped
 
 import cellcolor
 from cellcolor.data.cells_and_edges import OUTSIDE
-from cellcolor.data.objective import Objective
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import blobs
@@ -84,7 +83,7 @@ def test_no_choice_has_fewer_set_ups_or_fewer_segments(seed: int, count: int, li
     with pytest.MonkeyPatch.context() as patch:
         if not listed:
             patch.setattr(choosing_set_ups, "_MOST_SETS", 0)
-        choice = choose(surfaces, 1.0, Objective(), Options())
+        choice = choose(surfaces, 1.0, None, Options())
     assert len(choice.set_ups) == choice.fewest_set_ups == len(sets[0])
     assert choice.set_ups in sets
     assert choice.covered_share == pytest.approx(1.0)
@@ -113,7 +112,7 @@ def test_a_share_is_covered_with_no_fewer_set_ups(seed: int, count: int, share: 
         weights = np.bincount(cell[inside], areas[inside], len(found.instance.cells))
         fronts = front_by_subsets(found.instance, weights.tolist())
         least.append(min(k for k, w in fronts.items() if w >= share * whole - 1e-9))
-    choice = choose(surfaces, share, Objective(), Options())
+    choice = choose(surfaces, share, None, Options())
     assert len(choice.set_ups) == len(sets[0])
     assert choice.covered_share >= share - 1e-9
     assert choice.solution.segments >= min(least)
@@ -135,7 +134,7 @@ def test_a_change_over_has_its_price(seed: int, price: int) -> None:
                 graph = decomposition_of(together([surfaces[n] for n in some])).instance
                 assume(graph.most_live_loops < 2)
                 costs.append(minimum(graph) - size + price * (size - 1))
-    choice = choose(surfaces, 1.0, Objective(change_over=price), Options())
+    choice = choose(surfaces, 1.0, price, Options())
     used = len(choice.set_ups)
     assert (choice.solution.segments or 0) - used + price * (used - 1) == min(costs)
 

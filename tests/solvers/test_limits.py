@@ -21,7 +21,7 @@ from cellcolor.lab.families.hubs import hub_with_loops
 from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_cover
 from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
 from cellcolor.solvers.checked import solve
-from cellcolor.solvers.cpsat import cuts, model_search
+from cellcolor.solvers.cpsat import model_search
 from cellcolor.solvers.cpsat.model import full as model_module
 from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph, seams_of
 from cellcolor.solvers.cpsat.model.full import full_model, model_size
@@ -184,10 +184,7 @@ def test_the_estimate_for_one_hub_grows_with_the_cube() -> None:
     assert 7 < sizes[1] / sizes[0] < 8.5 and 3 < sizes[2] / sizes[1] < 3.6
 
 
-@pytest.mark.parametrize("fewest_cuts", [False, True])
-def test_what_is_too_large_is_not_built_and_that_is_said(
-    fewest_cuts: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_too_large_is_not_built_and_that_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     instance = hub(3, 12, 3)
     monkeypatch.setattr(model_search, "LARGEST_MODEL", 10)
     monkeypatch.setattr(model_module, "LARGEST_MODEL", 10)
@@ -196,7 +193,7 @@ def test_what_is_too_large_is_not_built_and_that_is_said(
         raise AssertionError("built")
 
     monkeypatch.setattr(model_search, "full_model", refuse)
-    found = solve(instance, Options(fewest_cuts=fewest_cuts), "cp-sat-model")
+    found = solve(instance, Options(), "cp-sat-model")
     assert found.status == "feasible"
     assert len(found.notes) == 1 and "was not built" in found.notes[0]
 
@@ -286,24 +283,19 @@ def test_twenty_loops() -> None:
     seams = seams_of(instance, colors, once, None)
     assert max(seam.strands for seam in seams) > 500_000
     assert model_module.seams_size(seams) > model_module.LARGEST_MODEL
-    found = solve(instance, Options(deadline=Deadline.after(4.0), workers=1, fewest_cuts=True))
+    found = solve(instance, Options(deadline=Deadline.after(4.0), workers=1))
     assert found.segments is not None
     assert any("was not built" in note for note in found.notes) or found.proved_for_surface
 
 
-@pytest.mark.parametrize("fewest_cuts", [False, True])
-def test_what_there_is_no_time_to_build_is_not_begun(
-    monkeypatch: pytest.MonkeyPatch, fewest_cuts: bool
-) -> None:
+def test_what_there_is_no_time_to_build_is_not_begun(monkeypatch: pytest.MonkeyPatch) -> None:
     """A hub of 130 petals: by the estimate its model takes longer than all the time there is."""
 
     def never(*_arguments: object, **_named: object) -> None:
         raise AssertionError("a model was begun")
 
     monkeypatch.setattr(model_search, "full_model", never)
-    monkeypatch.setattr(cuts, "build_apart", never)
     instance = hub(1, 130, 4)
-    options = Options(deadline=Deadline.after(1.0), fewest_cuts=fewest_cuts)
     assert 4e5 * model_module.SECONDS_A_TERM > 1.0
-    found = solve(instance, options, "cp-sat-model" if not fewest_cuts else "cp-sat")
+    found = solve(instance, Options(deadline=Deadline.after(1.0)), "cp-sat-model")
     assert found.segments is not None

@@ -74,13 +74,12 @@ def front_by_vertices(
     return with_fewer(best)
 
 
-def vertex_minimum(surface: LabelledSurface, costs: Sequence[int] | None = None) -> int:
+def vertex_minimum(surface: LabelledSurface) -> int:
     """The fewest connected components of equal color over all colorings of a mesh's vertices.
 
-    With costs by color it is the least that such components cost together. Without the topological
-    graph: vertices one by one in their order, which should be one with a short frontier.
+    Without the topological graph: vertices one by one in their order, which should be one with a
+    short frontier.
     """
-    price = [1] * len(surface.colors) if costs is None else costs
     cracks = {(c.i, c.j): c.colors for c in surface.cracks}
     neighbors: dict[int, set[int]] = defaultdict(set)
     for i, j in surface.left_of:
@@ -112,7 +111,7 @@ def vertex_minimum(surface: LabelledSurface, costs: Sequence[int] | None = None)
                 found = tuple(
                     (painted[p][0], names.setdefault(painted[p][1], len(names))) for p in kept
                 )
-                closed = sum(price[c] for c, s in set(painted) if s not in names)
+                closed = sum(s not in names for _, s in set(painted))
                 grown[found] = min(grown.get(found, cost + closed), cost + closed)
         layer, frontier = grown, [painted_now[p] for p in kept]
     return min(layer.values())

@@ -139,7 +139,7 @@ def _proof(report: MotionReport) -> Card | None:
         return None
     segments = solution.segments or 0
     bounds = [b for b in solution.bounds or () if b.value == solution.surface_lower_bound]
-    surface_bounds = [b for b in bounds if (b.holds_for, b.of) == ("surface", "segments")]
+    surface_bounds = [b for b in bounds if b.holds_for == "surface"]
     if not solution.proved_for_surface:
         text = (
             f"It is not proved that fewer are impossible: {count(segments, 'segment')} were found, "

@@ -101,7 +101,7 @@ class CompleteModelSolver:
         division, seams = None, ()
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
             division, seams = built.read(solver)
-        bounds = []
+        bounds = [Bound("cover", built.fewest_regions, "surface")]
         if isfinite(solver.best_objective_bound):
             bound = ceil(solver.best_objective_bound - 1e-6)
             colors = [frozenset(cell.colors) for cell in instance.cells]

@@ -64,6 +64,7 @@ class Formulation:
         sectors: the sector graph.
         regions: the color regions.
         segments: the objective.
+        fewest_regions: the size of a smallest cover, where the group ``cover`` is there; else 0.
         fixed_root: for each region with a one-colored cell, the cell that has its segment's root.
 
     Raises:
@@ -91,6 +92,7 @@ class Formulation:
         self.variables = Variables()
         self.region_of = {(c, color): n for n, (color, cells) in enumerate(regions) for c in cells}
         self.fixed_root = self._fixed_roots()
+        self.fewest_regions = 0
         _add_variables(self, only_centers="undivided" in wanted)
         for name, group in {**DEFINING, **REDUNDANT}.items():
             if name in DEFINING or name in wanted:
@@ -396,9 +398,9 @@ def regions_in_use(m: Formulation) -> None:
 
 def cover(m: Formulation) -> None:
     """(9) There are as many regions in use as a smallest set cover has, and as many segments."""
-    fewest = smallest_cover(m.regions, len(m.sectors.nodes))
-    m.model.add(sum(m.used) >= fewest)
-    m.model.add(sum(m.variables.root.values()) >= fewest)
+    m.fewest_regions = smallest_cover(m.regions, len(m.sectors.nodes))
+    m.model.add(sum(m.used) >= m.fewest_regions)
+    m.model.add(sum(m.variables.root.values()) >= m.fewest_regions)
 
 
 def company(m: Formulation) -> None:

@@ -12,7 +12,7 @@ from math import ceil, isfinite
 
 from ortools.sat.python import cp_model
 
-from cellcolor.data.solution import Seam
+from cellcolor.data.solution import ModelSize, Seam
 from cellcolor.deadline import Deadline
 from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds.cover import Region, color_regions, greedy_strangers, set_cover
@@ -53,7 +53,7 @@ class Part:
         best: the best division, on its dart graph.
         cover_bound: the size of a smallest cover, or what is proved of it.
         planner: what plans its segments; None before.
-        model_size: the variables and constraints of the complete model, if it was solved.
+        model_size: how large the complete model is, if it was solved.
         notes: models that were not built, and why, a sentence each.
     """
 
@@ -69,7 +69,7 @@ class Part:
         self.by = "strangers"
         self.cover_bound = self.bound
         self.planner: Planner | None = None
-        self.model_size: tuple[int, int] | None = None
+        self.model_size: ModelSize | None = None
         self.notes: list[str] = []
         self._planned: Sequence[Region] = ()
         self._running: int | None = None

@@ -138,7 +138,10 @@ class _Search:
                 graph, division = self._start[0], start
         notes = {note for part in self._parts for note in part.notes}
         sizes = [part.model_size for part in self._parts if part.model_size is not None]
-        model = ModelSize(*map(sum, zip(*sizes, strict=True))) if sizes else None
+        model = None
+        if sizes:
+            variables, constraints = (size.variables for size in sizes), (s.constraints for s in sizes)
+            model = ModelSize(sum(variables), sum(constraints))
         return Answer(division, graph.seams, self._bounds(), tuple(sorted(notes)), model)
 
     def _each(self, step: Callable[[Part, Deadline], None], share: float) -> None:

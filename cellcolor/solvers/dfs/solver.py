@@ -7,7 +7,7 @@ from functools import partial
 from itertools import islice
 from typing import TypeVar
 
-from cellcolor.data.bounds import Bound, Bounded
+from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell, DartName
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, number_segments
@@ -37,7 +37,6 @@ class ReferenceSolver:
         search_spaces=("paper", "surface"),
         several_loops=True,
         optimal_schemes=True,
-        objective=True,
     )
 
     def minimize(
@@ -49,8 +48,7 @@ class ReferenceSolver:
         corridors across each edge allow, and the lower bound is one that any division obeys.
         """
         graphs = Graphs(instance, options.strands)
-        costs = options.costs(instance)
-        parts = [_Part(graphs, cells, options.deadline, costs) for cells in graphs.parts()]
+        parts = [_Part(graphs, cells, options.deadline) for cells in graphs.parts()]
         covers = sum(part.bound for part in parts)
 
         def report() -> None:
@@ -69,10 +67,9 @@ class ReferenceSolver:
                     report()
         except OutOfTime:
             pass
-        of: Bounded = "segments" if costs is None else "cost"
         bounds = (
-            Bound("cover", covers, "surface", of=of),
-            Bound("search", sum(part.bound for part in parts), "strands", of=of),
+            Bound("cover", covers, "surface"),
+            Bound("search", sum(part.bound for part in parts), "strands"),
         )
         if any(part.segments is None for part in parts):
             return Answer(None, (), bounds)
@@ -142,21 +139,14 @@ class _Part:
     """The minimum of one connected part of the graph.
 
     Attributes:
-        segments: of the best division so far, None when there is none; with costs, what they cost.
+        segments: of the best division so far, None when there is none.
         bound: no division has fewer.
         blocks: the best division: color and darts of the sub-cells of each cell.
         seams: what its darts refer to.
     """
 
-    def __init__(
-        self,
-        graphs: Graphs,
-        cells: list[Cell],
-        deadline: Deadline,
-        costs: Sequence[int] | None = None,
-    ) -> None:
+    def __init__(self, graphs: Graphs, cells: list[Cell], deadline: Deadline) -> None:
         self._graphs = graphs
-        self._costs = costs
         self._cells = cells
         self._deadline = deadline
         self.segments: int | None = None
@@ -178,7 +168,6 @@ class _Part:
         for seam_strands in range(self._enough + 1):
             graph, search, seams = self._search(seam_strands)
             search.budget = sum(len(cell.colors) + len(cell.darts) for cell in graph)
-            search.budget *= max(self._costs or (1,))
             if self.segments is not None:
                 search.budget = self.segments - 1
             for segments, schemes in search.paintings():
@@ -193,7 +182,7 @@ class _Part:
     def _search(self, seam_strands: int) -> tuple[list[GraphCell], Search, list[Seam]]:
         built = [self._graphs.cell(cell, seam_strands) for cell in self._cells]
         graph = [cell for cell, _ in built]
-        search = Search(graph, self._graphs.region, self._deadline, self._costs)
+        search = Search(graph, self._graphs.region, self._deadline)
         return graph, search, [seam for _, seams in built for seam in seams]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import product
 
 import pytest
-from exhaustive_minima import literal_minimum, minimum
+from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES
@@ -13,7 +13,6 @@ from rooms import hub, planner_of
 
 from cellcolor.data.bounds import greatest
 from cellcolor.data.instance import Instance
-from cellcolor.data.objective import Objective
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.lab.families import planar_graph
 from cellcolor.solvers.bounds.cover import color_regions
@@ -59,22 +58,11 @@ def decided(parts: list[PartSearch]) -> int:
             part.regions,
             part.cover_bound,
             part.planning._solve_plan,
-            costs=part.costs,
             at_once=True,
         )
         part.planning.decide(part.models.draw, NEVER)
         assert part.segments == part.bound
     return sum(part.bound for part in parts)
-
-
-@examples(15)
-@given(seed=st.integers(0, 10**6), costs=st.tuples(*[st.integers(1, 4)] * 3))
-def test_with_costs_they_come_to_the_least_cost(seed: int, costs: tuple[int, ...]) -> None:
-    """Against every division, literally."""
-    instance = planar_graph(seed, 3, 4, 3)
-    objective = Objective(dict(zip(instance.colors, costs, strict=False)))
-    parts = searches(instance, Options(workers=1, objective=objective))
-    assert decided(parts) == literal_minimum(instance, costs)
 
 
 @examples(10)

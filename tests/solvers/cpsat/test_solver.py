@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 from dart_graphs import graph_of
-from exhaustive_minima import optimal_schemes
 from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
@@ -70,23 +69,6 @@ def test_without_a_proof_for_the_surface_nothing_is_called_optimal() -> None:
     found = solve(instance, Options(search_space="surface", strands=1))
     assert (found.segments, found.surface_lower_bound, found.status) == (3, 2, "feasible")
     assert not found.proved_for_surface
-
-
-@examples(20)
-@given(seed=SEEDS, cells=st.integers(2, 6), colors=st.integers(2, 3))
-def test_fewest_cutting_paths(seed: int, cells: int, colors: int) -> None:
-    """Against all optimal schemes: a division with the fewest sub-cells is a scheme."""
-    instance = planar_graph(seed, cells, cells + 4, colors)
-    found = solve(instance, Options(fewest_cuts=True))
-    _, schemes = optimal_schemes(instance)
-    fewest = min(sum(len(subcells) - 1 for subcells in scheme) for scheme in schemes)
-    assert found.cutting_paths == found.cutting_paths_lower_bound == fewest
-
-
-def test_fewest_cutting_paths_of_the_cell_that_must_be_split() -> None:
-    instance = Instance.read(PAPER / "split-cell.json")
-    found = solve(instance, Options(fewest_cuts=True))
-    assert (found.segments, found.cutting_paths, found.cutting_paths_lower_bound) == (2, 1, 1)
 
 
 def test_a_start_is_kept_when_there_is_no_time() -> None:
