@@ -125,7 +125,8 @@ class Formulation:
         colors, attached = sector_colors(self.sectors, painting)
         parent, rank = self._trees(colors, attached)
         for (sector, c), literal in v.color.items():
-            model.add_hint(literal, colors[sector] == c)
+            if len(self.colors(sector)) > 1:
+                model.add_hint(literal, colors[sector] == c)
         for (sector, c), literal in v.root.items():
             model.add_hint(literal, colors[sector] == c and sector not in parent)
         for (here, there), literal in v.parent.items():
