@@ -29,12 +29,9 @@ REFERENCE = "dfs"
 _OWN = {
     "cp-sat": "cellcolor.solvers.cpsat:CpSatSolver",
     "cp-sat-model": "cellcolor.solvers.cpsat:model_alone",
-    "cp-sat-pointers": "cellcolor.solvers.encodings.pointers:PointersSolver",
-    "cp-sat-ranks": "cellcolor.solvers.encodings.ranks:RanksSolver",
-    "cp-sat-contour": "cellcolor.solvers.encodings.contour:ContourSolver",
     "dfs": "cellcolor.solvers.dfs:ReferenceSolver",
     "clingo": "cellcolor.solvers.clingo:ClingoSolver",
-    "choco": "cellcolor.solvers.encodings.choco:ChocoSolver",
+    "choco": "cellcolor.solvers.choco.solver:ChocoSolver",
     "highs": "cellcolor.solvers.linear.rivals:HighsSolver",
     "scip": "cellcolor.solvers.linear.rivals:ScipSolver",
     "maxsat": "cellcolor.solvers.linear.rivals:MaxSatSolver",
