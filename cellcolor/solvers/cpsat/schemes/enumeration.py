@@ -86,14 +86,6 @@ class OptimalSchemes(Iterator[Division]):
         """End the search."""
         self._found.close()
 
-    def drawn(self, number: int) -> Iterator[Division]:
-        """Some schemes, each drawn with equal chances; none if the schemes were not counted."""
-        rng, frontier = Random(self._search.options.seed), self._search.frontier
-        if frontier is not None and frontier.count:
-            for _ in range(number):
-                self._search.options.deadline.check()
-                yield division_of(self._search.graph, frontier.drawn(rng))
-
 
 class _Search:
     """The search of :class:`OptimalSchemes`. It does not hold them: to drop them ends it."""
@@ -101,8 +93,7 @@ class _Search:
     def __init__(self, instance: Instance, options: Options, segments: int) -> None:
         self.options = options
         self.count: int | None = None
-        self.frontier: Frontier | None = None
-        self.graph: DartGraph
+        self._graph: DartGraph
         self._drawings: Drawings
         self._instance, self._segments = instance, segments
 
@@ -125,20 +116,20 @@ class _Search:
 
         colors = [frozenset(cell.colors) for cell in instance.cells]
         once = dict.fromkeys(instance.live_edges, 1)
-        graph = self.graph = dart_graph(instance, colors, once, None)
+        graph = self._graph = dart_graph(instance, colors, once, None)
         self._drawings = Drawings(graph, solve)
         start = self._start()
         if start is not None:
             yield division_of(graph, start)
         try:
-            self.frontier = self._counted(options.deadline.share(_COUNTING))
+            frontier = self._counted(options.deadline.share(_COUNTING))
         except (OutOfTime, TooLarge) as error:
             if isinstance(error, KeyboardInterrupt):
                 raise
             options.deadline.check()
         else:
-            self.count = self.frontier.count
-            for painting in self.frontier.paintings():
+            self.count = frontier.count
+            for painting in frontier.paintings():
                 options.deadline.check()
                 if painting != start:
                     yield division_of(graph, painting)
@@ -156,7 +147,7 @@ class _Search:
 
     def _is_scheme(self, painting: Painting) -> bool:
         """Whether a painting with the fewest segments keeps the rules that the model leaves out."""
-        graph = self.graph
+        graph = self._graph
         return (
             all(map(unconnected_differ, graph.loops, painting))
             and zeros_can_differ(graph, painting, self.options.deadline)
@@ -165,7 +156,7 @@ class _Search:
 
     def _start(self) -> Painting | None:
         """The scheme of the division to start from."""
-        start, graph = self.options.start, self.graph
+        start, graph = self.options.start, self._graph
         if start is None:
             return None
         strands = dict.fromkeys(self._instance.live_edges, 1)
@@ -177,13 +168,13 @@ class _Search:
     def _counted(self, deadline: Deadline, given: Mapping[int, Blocks] | None = None) -> Frontier:
         regions = color_regions(self._instance)
         draw = self._drawings.possible_in
-        return Frontier(self.graph, regions, self._segments, draw, deadline, given)
+        return Frontier(self._graph, regions, self._segments, draw, deadline, given)
 
     def _nearby(self, start: Painting | None) -> Iterator[Painting | None]:
         """Schemes that differ from a known one in a few cells only; None after each try."""
         if start is None:
             return
-        graph, rng, known = self.graph, Random(self.options.seed), [start]
+        graph, rng, known = self._graph, Random(self.options.seed), [start]
         around = [
             sorted({graph.darts[graph.darts[dart].twin].cell for dart in own})
             for own in graph.lists

@@ -1,4 +1,4 @@
-"""Optimal schemes by dynamic programming over the cells: counted exactly, listed, drawn at random.
+"""Optimal schemes by dynamic programming over the cells: counted exactly, and listed.
 
 This is a frontier, or transfer matrix, method. The cells are painted one after the other. Two
 partial paintings have the same completions if they look alike from the cells to come, and make one
@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cache
-from random import Random
 from typing import NamedTuple
 
 from cellcolor.deadline import Deadline
@@ -100,14 +99,13 @@ class Frontier:
         # number of the front that it leads to. Steps that lead to no scheme are left out.
         self._steps: list[list[list[tuple[Blocks, int]]]] = []
         ends = self._build()
-        # For each layer, for each front in it, how many schemes are reached from it.
-        self._counts = [[1] * ends]
+        # For each front of a layer, the last one first, how many schemes are reached from it.
+        reached = [1] * ends
         for depth in reversed(range(len(self._steps))):
-            after = self._counts[0]
-            layer = [[step for step in own if after[step[1]]] for own in self._steps[depth]]
+            layer = [[step for step in own if reached[step[1]]] for own in self._steps[depth]]
             self._steps[depth] = layer
-            self._counts.insert(0, [sum(after[end] for _, end in own) for own in layer])
-        self.count = self._counts[0][0]
+            reached = [sum(reached[end] for _, end in own) for own in layer]
+        self.count = reached[0]
 
     def paintings(self) -> Iterator[Painting]:
         """Every scheme, once."""
@@ -125,20 +123,6 @@ class Frontier:
             else:
                 yield self._painting(chosen)
                 chosen.pop()
-
-    def drawn(self, rng: Random) -> Painting:
-        """One scheme, each as likely as any other. There has to be one."""
-        chosen: list[Blocks] = []
-        front = 0
-        for layer, count, after in zip(self._steps, self._counts, self._counts[1:], strict=False):
-            place = rng.randrange(count[front])
-            for blocks, end in layer[front]:
-                place -= after[end]
-                if place < 0:
-                    chosen.append(blocks)
-                    front = end
-                    break
-        return self._painting(chosen)
 
     def _painting(self, chosen: Sequence[Blocks]) -> Painting:
         of_cell = dict(zip(self._order, chosen, strict=True))
