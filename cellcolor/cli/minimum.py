@@ -158,12 +158,6 @@ def _build_surface(source: Path, output: Path) -> Instance:
     help="With --all, stop after this many schemes.  [default: 1000]",
 )
 @click.option(
-    "--diverse",
-    metavar="N",
-    type=click.IntRange(1, 1000),
-    help="With --all, list only this many schemes, as different from each other as possible.",
-)
-@click.option(
     "--refine-until-stable",
     "refine",
     is_flag=True,
@@ -200,7 +194,6 @@ def _check_solve(
     strands: int | None,
     every: bool,
     limit: int | None,
-    diverse: int | None,
     refine: bool,
     picture: Path | None,
     **given: Any,
@@ -210,8 +203,6 @@ def _check_solve(
     wrong = {
         "--strands needs --search-space surface": strands is not None and search_space == "paper",
         "--limit needs --all": limit is not None and not every,
-        "--diverse needs --all": diverse is not None and not every,
-        "--diverse and --limit exclude each other": diverse is not None and limit is not None,
         "--all needs --search-space paper: schemes are defined only there": (
             every and search_space == "surface"
         ),

@@ -24,7 +24,7 @@ from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solutio
 from cellcolor.cli.terminal import apart_from, complain, print_json, say, unheard
 from cellcolor.data.instance import Instance
 from cellcolor.data.schemes import scheme_line
-from cellcolor.data.solution import Division, SearchSpace, Solution
+from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.drawing import kind_of_picture, kind_of_plot
 from cellcolor.door.result import Result
@@ -44,7 +44,6 @@ from cellcolor.solvers.interface import PORTFOLIO, STRANDS, Options
 
 _SOLUTION = kind_of_format(Solution.FORMAT)
 _SCHEMES = 1000  # that are listed unless --limit says otherwise
-_CHOSEN = "The schemes listed are those of {:,} that differ most from each other, by painted area."
 
 
 class Interrupted(OutOfTime, KeyboardInterrupt):
@@ -84,7 +83,6 @@ class Request:
     every: bool
     warm_start: Path | None
     limit: int | None
-    diverse: int | None
     refine: bool
     picture: Path | None
     time_limit: float | None
@@ -318,17 +316,6 @@ def _spool(target: Path | None) -> Iterator[IO[bytes] | None]:
         yield spool
 
 
-def _found_in_time(schemes: Iterator[Division]) -> list[Division]:
-    """All of them, or those found when the time ran out; then at least one."""
-    found: list[Division] = []
-    try:
-        found.extend(schemes)
-    except OutOfTime:
-        if not found:
-            raise
-    return found
-
-
 def _with_schemes(
     instance: Instance,
     solution: Solution,
@@ -342,7 +329,6 @@ def _with_schemes(
     One more than the limit is looked for: only so is it known whether the limit cut any off.
     """
     from cellcolor.solvers.checked import enumerate_schemes
-    from cellcolor.solvers.diverse import most_different
     from cellcolor.solvers.interface import Start
 
     if solution.status != "optimal" or solution.segments is None:
@@ -357,18 +343,8 @@ def _with_schemes(
     try:
         options, most = request.options(deadline), request.limit or _SCHEMES
         listed = enumerate_schemes(
-            instance,
-            options,
-            request.solver,
-            solution.segments,
-            known,
-            counted.append,
-            pool=request.diverse is not None,
+            instance, options, request.solver, solution.segments, known, counted.append
         )
-        if request.diverse is not None:
-            pool = _found_in_time(listed)
-            listed = iter(most_different(instance, pool, request.diverse))
-            notes = (*notes, _CHOSEN.format(len(pool)))
         for division in listed:
             if found[0] == most:
                 complete = False
@@ -385,8 +361,6 @@ def _with_schemes(
     count, end = found
     if spool is not None:
         spool.truncate(end)
-    if request.diverse is not None:
-        complete = counted == [count]
     if not complete and counted:
         notes = (*notes, f"There are {counted[0]:,} optimal schemes; {count:,} of them are listed.")
     seconds = solution.seconds + time.monotonic() - started

@@ -24,7 +24,6 @@ from cellcolor.data.wording import lift_offs_of
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, RefusedResult
 from cellcolor.solvers.bounds.cover import hard_cells
-from cellcolor.solvers.diverse import pool_of
 from cellcolor.solvers.interface import Answer, OnProgress, Options, SchemeSolver, Start
 from cellcolor.solvers.registry import DEFAULT, make_solver
 from cellcolor.solvers.seamed import Seamed
@@ -112,7 +111,18 @@ def solve(
         # Covering nothing of a surface in 0 segments would be no answer to anybody's question.
         note = "No point of the surface can be covered: there is nothing to divide."
         answer = Answer(None, (), (), notes=(*answer.notes, note))
-    solution = solution_of(instance, options, solver, answer, time.monotonic() - start)
+    return checked_solution(instance, options, solver, answer, time.monotonic() - start)
+
+
+def checked_solution(
+    instance: Instance, options: Options, solver: str, answer: Answer, seconds: float
+) -> Solution:
+    """What follows from an answer, after the checker has seen it.
+
+    Raises:
+        RefusedResult: the checker refuses what the solver found.
+    """
+    solution = solution_of(instance, options, solver, answer, seconds)
     # Its certificates have been verified just now.
     bare = tuple(replace(bound, certificate=None) for bound in solution.bounds or ())
     _insist(check_solution(instance, replace(solution, bounds=bare)), solver)
@@ -162,7 +172,6 @@ def enumerate_schemes(
     segments: int,
     known: Start | None = None,
     counted: Callable[[int], None] | None = None,
-    pool: bool = False,
 ) -> Iterator[Division]:
     """Every optimal scheme (docs/semantics.md, section 3), each once, as they are found.
 
@@ -170,7 +179,6 @@ def enumerate_schemes(
         segments: the minimum, in the search space ``paper``.
         known: a division to start from, for solvers that can.
         counted: told how many schemes there are as soon as the solver knows that.
-        pool: not all, but up to a thousand, drawn at random where the solver has counted them.
 
     Raises:
         InputError: there is no such solver, or it lists no schemes, or none of this instance.
@@ -187,7 +195,7 @@ def enumerate_schemes(
         options = replace(options, start=known)
     found = False
     schemes = chosen.optimal_schemes(instance, options, segments)
-    for division in pool_of(schemes) if pool else schemes:
+    for division in schemes:
         found = True
         if counted is not None and (count := getattr(schemes, "count", None)) is not None:
             counted(count)

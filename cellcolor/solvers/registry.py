@@ -31,7 +31,7 @@ _OWN = {
     "cp-sat-model": "cellcolor.solvers.cpsat:CompleteModelSolver",
     "dfs": "cellcolor.solvers.dfs:ReferenceSolver",
     "clingo": "cellcolor.solvers.clingo:ClingoSolver",
-    "choco": "cellcolor.solvers.encodings.choco:ChocoSolver",
+    "choco": "cellcolor.solvers.choco.solver:ChocoSolver",
     "highs": "cellcolor.solvers.linear.rivals:HighsSolver",
     "scip": "cellcolor.solvers.linear.rivals:ScipSolver",
     "maxsat": "cellcolor.solvers.linear.rivals:MaxSatSolver",

@@ -32,6 +32,10 @@ class CompleteModel(Formulation):
         groups: the redundant groups of constraints; None for all of them.
         deadline: of building it.
 
+    Attributes:
+        instance: the instance.
+        strands: of each live edge.
+
     Raises:
         InputError: there is no such group.
         TooLarge: there are too many sectors.
@@ -45,7 +49,7 @@ class CompleteModel(Formulation):
         groups: Collection[str] | None = None,
         deadline: Deadline = NEVER,
     ) -> None:
-        self._instance, self._strands = instance, strands
+        self.instance, self.strands = instance, strands
         self._loops = loops_of(instance)
         self._places = seam_places(instance, self._loops)
         self._each = dict.fromkeys(instance.live_edges, strands)
@@ -57,16 +61,16 @@ class CompleteModel(Formulation):
         """The division that a solver has found, and the seams that its darts refer to."""
         painting = canonical(self._graph, self.painting(solver))
         graph, painting = seamed(
-            self._instance, self._each, self._graph, painting, self._loops, self._places
+            self.instance, self._each, self._graph, painting, self._loops, self._places
         )
-        return division_of(graph, painting, self._strands), graph.seams
+        return division_of(graph, painting, self.strands), graph.seams
 
     def _whole(self) -> list[list[Block]]:
         """Every cell painted whole, each in the color of its largest color region."""
         size = {(cell, color): len(cells) for color, cells in self.regions for cell in cells}
         chosen = [
             max(cell.colors, key=lambda color, cell=cell: size[cell.id, color])  # type: ignore[misc]
-            for cell in self._instance.cells
+            for cell in self.instance.cells
         ]
         return canonical(self._graph, [[Block(color, set())] for color in chosen])
 

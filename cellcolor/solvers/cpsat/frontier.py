@@ -99,14 +99,13 @@ class Frontier:
         # number of the front that it leads to. Steps that lead to no scheme are left out.
         self._steps: list[list[list[tuple[Blocks, int]]]] = []
         ends = self._build()
-        # For each layer, for each front in it, how many schemes are reached from it.
-        self._counts = [[1] * ends]
+        # For each front of a layer, the last one first, how many schemes are reached from it.
+        reached = [1] * ends
         for depth in reversed(range(len(self._steps))):
-            after = self._counts[0]
-            layer = [[step for step in own if after[step[1]]] for own in self._steps[depth]]
+            layer = [[step for step in own if reached[step[1]]] for own in self._steps[depth]]
             self._steps[depth] = layer
-            self._counts.insert(0, [sum(after[end] for _, end in own) for own in layer])
-        self.count = self._counts[0][0]
+            reached = [sum(reached[end] for _, end in own) for own in layer]
+        self.count = reached[0]
 
     def paintings(self) -> Iterator[Painting]:
         """Every scheme, once."""

@@ -153,7 +153,7 @@ def test_schemes_near_a_known_one_are_handed_out_while_the_search_finds_none(
 
 @pytest.mark.parametrize("family", sorted(SMALL))
 def test_counted_schemes_are_those_of_the_depth_first_search(family: str) -> None:
-    """Listed once each, counted before they are listed; and any drawn one is among them."""
+    """Listed once each, and counted before they are listed."""
     for seed in range(3):
         made = SMALL[family](seed)
         instance = made if isinstance(made, Instance) else decompose(made)
@@ -162,7 +162,6 @@ def test_counted_schemes_are_those_of_the_depth_first_search(family: str) -> Non
         schemes = CpSatSolver().optimal_schemes(instance, Options(), segments)
         found = [scheme_key(division) for division in schemes]
         assert len(set(found)) == len(found) == schemes.count
-        assert {scheme_key(division) for division in schemes.drawn(20)} <= set(found)
         if instance.most_live_loops < 2:
             other = enumerate_schemes(instance, Options(), "dfs", segments)
             assert {scheme_key(division) for division in other} == set(found)
@@ -172,4 +171,3 @@ def test_two_to_the_fortieth_schemes_are_counted() -> None:
     schemes = CpSatSolver().optimal_schemes(MANY, Options(), 40)
     assert scheme_key(next(schemes)) != scheme_key(next(schemes))
     assert schemes.count == 2**40
-    assert len({scheme_key(division) for division in schemes.drawn(50)}) == 50

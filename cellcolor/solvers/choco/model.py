@@ -1,44 +1,32 @@
-"""Choco, a constraint solver with lazy clause generation, on the encoding with ranks.
+"""Ranks: every tree of sub-cells has a root, and a number that grows from parent to child.
 
-Run as a program, ``python -m cellcolor.solvers.encodings.choco INSTANCE SECONDS``, this module
-solves an instance and prints each better solution as a line of JSON. The solver runs it in a
-process of its own: Choco hears no signal while it searches, its errors end the process, and it may
-print.
+A segment is a connected set of sub-cells. Choose a spanning tree of each: the joins of its edges
+are **counted**, others are not. A sub-cell is a chain of darts whose joins are counted; two
+successive ones are **linked**. In a cell
 
-The formulation is that of ``ranks``, where each group is explained. Of what was tried it is the
-quickest: Choco's own `tree` over pointers needs the search without learning, which proves far less.
+    sub-cells = counted darts - links,
+
+and every sub-cell but the root of its tree has one dart that leads **up** to its parent. So
+sub-cells less darts that lead up are roots, and these are counted. A literal carried along its
+chain ensures that a sub-cell has one parent.
+
+Of what was tried this is the quickest: Choco's own `tree` over pointers needs the search without
+learning, which proves far less.
 """
 
 from __future__ import annotations
 
-import json
 import math
-import sys
-import tempfile
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from importlib.metadata import version
-from importlib.util import find_spec
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cellcolor.data.bounds import Bound
-from cellcolor.data.instance import Instance
-from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.errors import CellcolorError, SolverMissing
-from cellcolor.processes import Child
-from cellcolor.solvers.bounds.cover import greedy_strangers
 from cellcolor.solvers.bounds.hubs import best_grouping
-from cellcolor.solvers.encodings.problem import Problem
-from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
-from cellcolor.solvers.joined_chains import division_of_chains
+from cellcolor.solvers.choco.problem import Problem
 
 if TYPE_CHECKING:
     from pychoco.variables.boolvar import BoolVar
     from pychoco.variables.intvar import IntVar
-
-MOST_MEMORY = 3 * 2**30
-"""Bytes of memory that the process may take; then it ends, and what it has found is kept."""
 
 
 class Ranks:
@@ -118,12 +106,14 @@ class Ranks:
         self.model.add_clauses(list(some), list(all_of))
 
     def _one_color(self) -> None:
+        """An edge is joined in one color at most. If it is, one side is the other's parent."""
         for edge, colors in self.problem.colors.items():
             joined = [self.joined[edge, color] for color in sorted(colors)]
             self.model.sum(joined, "=", self.counted[edge]).post()
             self.model.sum([self.up[edge], self.up[-edge]], "=", self.counted[edge]).post()
 
     def _one_chain(self) -> None:
+        """A sub-cell is a chain: each dart has at most one neighbor after it and one before it."""
         after: dict[int, list[BoolVar]] = defaultdict(list)
         before: dict[int, list[BoolVar]] = defaultdict(list)
         for (one, other), literal in self.link.items():
@@ -149,6 +139,12 @@ class Ranks:
             self._clause([self.met[dart]], [literal])
 
     def _no_crossing(self) -> None:
+        """Cutting paths do not cross, so neither do links.
+
+        Take a dart and a later one. A link from before the first to the second passes over the
+        first, so a link from the first to beyond the second crosses it. Two links of the first kind
+        share their end, two of the second kind their start. So at most one of all these holds.
+        """
         for cell in self.problem.cells:
             for place, dart in enumerate(cell):
                 for there in range(place + 1, len(cell)):
@@ -160,7 +156,11 @@ class Ranks:
                         self.model.sum(over + out, "<=", 1).post()
 
     def _roots(self) -> None:
-        """Sub-cells = counted darts - links; those without a dart that leads up are roots."""
+        """Sub-cells without a parent are roots, and a cell with a root is undivided.
+
+        docs/encodings.md explains why every segment has such a root. With it no dart of the cell
+        leads up, and the equation says that the root is the cell's only sub-cell.
+        """
         for number, cell in enumerate(self.problem.cells):
             alone, root = self.alone[number], self.root[number]
             counted = [self.counted[abs(dart)] for dart in cell]
@@ -176,6 +176,7 @@ class Ranks:
                 self._clause([], [root, literal])
 
     def _no_circles(self) -> None:
+        """All darts of a sub-cell have one rank, which is higher than that of its parent."""
         for dart, literal in self.up.items():
             above = self.model.arithm(self.rank[dart], ">", self.rank[-dart])
             above.implied_by(literal)
@@ -183,6 +184,7 @@ class Ranks:
             self.model.arithm(self.rank[one], "=", self.rank[other]).implied_by(literal)
 
     def _cover(self) -> None:
+        """Each color region in use holds a root, and each cell touches one in use or is alone."""
         problem = self.problem
         used = [self.model.boolvar(name=f"used_{n}") for n in range(len(problem.regions))]
         for (edge, color), literal in self.joined.items():
@@ -202,6 +204,7 @@ class Ranks:
             self.model.sum(links, "=", self.linked[cell]).post()
 
     def _homes(self) -> None:
+        """A segment that reaches the home of its color region has its root there."""
         for cell in sorted(self.problem.homes):
             for dart in self.problem.cells[cell]:
                 self._clause([], [self.up[dart]])
@@ -239,87 +242,3 @@ class Ranks:
                 minus.append(literal)
         signs = [1] * len(plus) + [-1] * len(minus)
         self.model.scalar([*plus, *minus], signs, "=", len(hubs) - len(problem.cells)).post()
-
-
-class ChocoSolver:
-    """Fewest segments in the search space ``paper``, for cells with one live loop each."""
-
-    abilities = Abilities()
-
-    def __init__(self) -> None:
-        if find_spec("pychoco") is None:
-            raise SolverMissing("choco", "pip install 'fewest-lift-offs[peers]'")
-
-    @property
-    def version(self) -> str:
-        """The version of pychoco, which includes Choco."""
-        return f"pychoco {version('pychoco')}"
-
-    def minimize(
-        self, instance: Instance, options: Options, progress: OnProgress | None = None
-    ) -> Answer:
-        """Choco searches from above and tells no bound of its own until it has proved the minimum.
-
-        Until then the bound is a number of cells of which no two lie in one color region.
-
-        Raises:
-            CellcolorError: Choco failed before it found a solution.
-        """
-        if not instance.cells:
-            return Answer((), (), ())
-        deadline = options.deadline
-        best: dict[str, Any] | None = None
-        proved, fewest = False, 0
-        try:
-            Problem.of(instance, deadline)  # what cannot be solved is refused here
-            fewest = len(greedy_strangers(instance))
-            with tempfile.TemporaryDirectory(prefix="cellcolor-") as name:
-                folder = Path(name)
-                file = folder / "instance.json"
-                file.write_text(instance.to_json(), encoding="utf-8")
-                command = [sys.executable, "-m", __name__, str(file), str(deadline.left)]
-                with Child(command, folder) as child:
-                    for line in child.lines(deadline):
-                        told = _told(line)
-                        proved = told.get("proved", proved)
-                        if "segments" in told:
-                            best = told
-                            if progress is not None:
-                                progress(told["segments"], fewest)
-                    if best is None and child.failure is not None:
-                        raise CellcolorError(child.failure)
-        except OutOfTime:
-            pass  # before the search began; or a signal that stands for the end of the time
-        bounds = [Bound("strangers", fewest, "surface")]
-        if best is None:
-            return Answer(None, (), tuple(bounds))
-        if proved:
-            bounds.append(Bound("search", best["segments"], "strands"))
-        division = division_of_chains(instance, dict(best["colors"]), dict(best["after"]))
-        return Answer(division, (), tuple(bounds))
-
-
-def _told(line: str) -> dict[str, Any]:
-    """What a line of the program says; Choco may print lines of its own."""
-    try:
-        told = json.loads(line)
-    except json.JSONDecodeError:
-        return {}
-    return told if isinstance(told, dict) else {}
-
-
-def _main(path: str, seconds: float) -> None:
-    """What the process of its own does."""
-    if sys.platform != "win32":
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_DATA, (MOST_MEMORY, MOST_MEMORY))
-    deadline = Deadline.after(seconds)
-    instance = Instance.read(path)
-    built = Ranks(Problem.of(instance, deadline), len(greedy_strangers(instance)))
-    for solution in built.solutions(deadline.left):
-        print(json.dumps(solution), flush=True)
-
-
-if __name__ == "__main__":
-    _main(sys.argv[1], float(sys.argv[2]))

@@ -1,4 +1,4 @@
-"""The input of the encodings: the live darts of each cell in cyclic order, no dominated colors."""
+"""What is given: the live darts of each cell in cyclic order, no dominated colors."""
 
 from __future__ import annotations
 
@@ -18,8 +18,7 @@ Pair = tuple[int, int]
 """Two darts of one cell, in the order of its list."""
 
 LARGEST_MODEL = 6e5
-"""The most terms of a model that is built; a solver may take kilobytes for each. The contour model
-has up to twice as many terms as are estimated."""
+"""The most terms of a model that is built; the solver may take kilobytes for each."""
 
 MANY_DARTS = 300
 """A cell with more darts makes a model too large; its pairs of darts are not even counted."""

@@ -1,4 +1,4 @@
-"""Choco on the encoding with ranks: known answers, other solvers, limits, what ends it."""
+"""Choco: known answers, other solvers, limits, what ends it."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ from cellcolor.errors import CellcolorError, SolverMissing, TooLarge
 from cellcolor.lab.families import hub, hub_grid, hub_minimum, planar_graph
 from cellcolor.processes import Child
 from cellcolor.solvers.checked import solve
+from cellcolor.solvers.choco import solver as choco
+from cellcolor.solvers.choco.model import Ranks
+from cellcolor.solvers.choco.problem import Problem
 from cellcolor.solvers.dfs import ReferenceSolver
-from cellcolor.solvers.encodings import choco
-from cellcolor.solvers.encodings.problem import Problem
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.joined_chains import division_of_chains
 from cellcolor.solvers.registry import make_solver, solver_version
@@ -41,7 +42,7 @@ pytest.importorskip("pychoco")
 
 def minimum(instance: Instance) -> int:
     """What the model finds and proves in this process, which is quicker than one of its own."""
-    *found, last = choco.Ranks(Problem.of(instance), 0).solutions(60.0)
+    *found, last = Ranks(Problem.of(instance), 0).solutions(60.0)
     assert last == {"proved": True}
     best = found[-1]
     division = division_of_chains(instance, dict(best["colors"]), dict(best["after"]))
@@ -73,7 +74,7 @@ def test_hubs(seed: int, petals: int) -> None:
 def test_a_hub_is_bounded_before_the_search() -> None:
     """The petals less the most links of the hub, which the sum over all cells tells at once."""
     instance = hub(0, 24, 4)
-    built = choco.Ranks(Problem.of(instance), 0)
+    built = Ranks(Problem.of(instance), 0)
     fewest = hub_minimum([cell.colors[0] for cell in instance.cells[1:]])
     built.model.arithm(built.segments, "<", fewest).post()
     assert [*built.solutions(60.0)] == [{"proved": True}]
