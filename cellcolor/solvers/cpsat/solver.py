@@ -83,9 +83,7 @@ class CpSatSolver:
 class _Search:
     """The best division of the whole instance so far, put together from its parts."""
 
-    def __init__(
-        self, instance: Instance, options: Options, progress: OnProgress | None
-    ) -> None:
+    def __init__(self, instance: Instance, options: Options, progress: OnProgress | None) -> None:
         self._instance, self._options, self._progress = instance, options, progress
         self._loops = loops_of(instance)
         self._places = seam_places(instance, self._loops)
@@ -140,7 +138,10 @@ class _Search:
         sizes = [part.model_size for part in self._parts if part.model_size is not None]
         model = None
         if sizes:
-            variables, constraints = (size.variables for size in sizes), (s.constraints for s in sizes)
+            variables, constraints = (
+                (size.variables for size in sizes),
+                (s.constraints for s in sizes),
+            )
             model = ModelSize(sum(variables), sum(constraints))
         return Answer(division, graph.seams, self._bounds(), tuple(sorted(notes)), model)
 
