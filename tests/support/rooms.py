@@ -19,7 +19,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.lab.families.meshes import make_mesh
 from cellcolor.solvers.bounds.cover import color_regions, set_cover
-from cellcolor.solvers.cpsat.routes.segment_plans import Planner
+from cellcolor.solvers.cpsat.segment_plans import Planner
 
 RED, BLUE, GREEN = 0, 1, 2
 
