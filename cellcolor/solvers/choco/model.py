@@ -21,7 +21,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from cellcolor.solvers.bounds.hubs import best_grouping
+from cellcolor.solvers.bounds.grouping import best_grouping
 from cellcolor.solvers.choco.problem import Problem
 
 if TYPE_CHECKING:
