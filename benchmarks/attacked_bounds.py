@@ -1,7 +1,7 @@
 """Every bound attacked by brute force: ``python benchmarks/attacked_bounds.py [COUNT [SEED]]``.
 
-Takes the small instances of a campaign (docs/campaign.md), in place of every tenth one a hub whose
-petals have one color or two, where more depends on what segments avoid. Finds each bound by
+Takes instances of the small families in turn, in place of every tenth one a hub whose petals have
+one color or two, where more depends on what segments avoid. Finds each bound by
 itself, as far as it goes: no division is looked for that would end the search. A bound must not
 exceed
 
@@ -17,16 +17,19 @@ from __future__ import annotations
 import random
 import sys
 from collections import Counter
+from dataclasses import dataclass
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
 from rooms import hub, planner_of
+from vertex_minima import vertex_minimum
 
 from cellcolor.data.instance import Instance
+from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
-from cellcolor.lab.campaign.agreement import fewest_by_vertices
-from cellcolor.lab.campaign.pool import Case, draw_case
+from cellcolor.decomposition import decompose
+from cellcolor.lab.families import SMALL
 from cellcolor.solvers.bounds.cover import greedy_strangers, set_cover
 from cellcolor.solvers.bounds.hubs import hub_bound
 from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
@@ -112,14 +115,27 @@ def exact(instance: Instance) -> int | None:
     return None if None in minima else sum(its.segments for its in minima if its is not None)
 
 
+@dataclass(frozen=True)
+class Case:
+    """An instance of a family; the mesh behind it, None for an abstract graph."""
+
+    kind: str
+    instance: Instance
+    surface: LabelledSurface | None
+
+
 def drawn(seed: int, number: int) -> Case:
-    """An instance of the campaign with that seed, or a hub."""
+    """An instance of a small family, or a hub."""
+    rng = random.Random(f"{seed} {number}")
     if number % 10:
-        return draw_case(seed, number)
-    rng = random.Random(f"hub {seed} {number}")
+        kind = list(SMALL)[number % len(SMALL)]
+        made = SMALL[kind](rng.randrange(2**31))
+        if isinstance(made, Instance):
+            return Case(kind, made, None)
+        return Case(kind, decompose(made), made)
     petals = [rng.sample(range(3), rng.randint(1, 2)) for _ in range(rng.randint(5, 7))]
     made = hub(*(tuple(sorted(colors)) for colors in petals))
-    return Case(seed, number, "hub, two colors", made, None)
+    return Case("hub, two colors", made, None)
 
 
 def brute_force(case: Case) -> tuple[int, int, bool]:
@@ -129,7 +145,7 @@ def brute_force(case: Case) -> tuple[int, int, bool]:
     fewest = solution.segments
     assert solution.status == "optimal"
     assert fewest is not None
-    by_vertices = None if case.surface is None else fewest_by_vertices(case.surface, MOST_STATES)
+    by_vertices = None if case.surface is None else vertex_minimum(case.surface, MOST_STATES)
     return fewest, min(fewest, by_vertices or fewest), by_vertices is not None
 
 

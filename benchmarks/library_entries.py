@@ -243,8 +243,7 @@ def _lower(space: SearchSpace, shown: Sequence[_Shown]) -> LowerBound:
         )
         for one in shown
         for verdict in one.verdicts
-        if verdict.bound.of == "segments"
-        and (space == "paper" or verdict.bound.holds_for == "surface")
+        if space == "paper" or verdict.bound.holds_for == "surface"
     ]
     nothing = LowerBound(0, "none", True, "none", "", _NO_DATE)
     return max([nothing, *bounds], key=lambda bound: (bound.value, bound.verified))

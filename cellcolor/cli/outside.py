@@ -31,7 +31,8 @@ _FORMATS = ("pbtxt", "pb", *_ANSWERED)
     "--format",
     "kind",
     type=click.Choice(_FORMATS),
-    help="pbtxt, pb: the complete model for CP-SAT. opb: pseudo-Boolean. wcnf: MaxSAT. mps: mixed-integer programs. dzn: data for MiniZinc. "
+    help="pbtxt, pb: the complete model for CP-SAT. opb: pseudo-Boolean. wcnf: MaxSAT. "
+    "mps: mixed-integer programs. dzn: data for MiniZinc. "
     "lp: facts for answer set programs.  [default: from the ending of OUT]",
 )
 def export(source: Path, output: Path, kind: str | None) -> Exit:

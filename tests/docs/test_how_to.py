@@ -97,12 +97,7 @@ def test_a_family(clone: Path) -> None:
     chains, top, line, _ = found = blocks("add-a-family")
     for block in (chains, top, line):
         follow(block, clone)
-    campaign, bench = commands(found)
-    done = run(campaign, clone, clone)
-    assert done.returncode == 0, done.stdout + done.stderr
-    row = next(row for row in done.stdout.splitlines() if row.strip().startswith("chains"))
-    # Instances, minima proved, scheme sets, always cut, meshes, alike, disagreements.
-    assert row.split()[1:8] == ["1", "1", "1", "0", "0", "0", "0"]
+    (bench,) = commands(found)
     done = run(bench, clone, clone)
     assert done.returncode == 0 and "8 runs, 8 with a proved minimum" in done.stdout, done.stderr
     script = (

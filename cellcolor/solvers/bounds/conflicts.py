@@ -112,7 +112,7 @@ class Side:
                 self._wall = self._components(parted, other)
 
     def separations(self, near: int, far: int) -> list[Separation]:
-        """The separations of the other region by a segment that touches two merged cells of its own.
+        """What a segment that touches two merged cells of its own separates of the other region.
 
         Each component of the wall (docs/bounds/conflicts.md) gives one, if the segment separates
         some of its merged cells.

@@ -5,7 +5,7 @@ The polygons are glued along edges; curves on the surface are compared up to hom
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from cellcolor.data.instance import Instance

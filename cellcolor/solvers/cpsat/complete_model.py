@@ -102,7 +102,8 @@ class CompleteModelSolver:
                 progress(segments, 0)
 
         status = runner.solve(solver, built.model, watch)
-        division, seams = None, ()
+        division: Division | None = None
+        seams: tuple[Seam, ...] = ()
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
             division, seams = built.read(solver)
         bounds = [Bound("cover", built.fewest_regions, "surface")]

@@ -171,40 +171,27 @@ def dart_graph(
         return joinable_of[edge]
 
     for cell, own in zip(instance.cells, loops, strict=True):
-        if seams is None:
-            walks = [_unseamed(loop) for loop in own]
-        else:
-            between = seams_of.get(cell.id, [])
-            apart = [
-                leaves and sum(strands[abs(d)] for d in loop if joinable(d)) == 1
-                for loop in own[1:]
-            ]
-            seamed = [loop for loop, leaf in zip(own[1:], apart, strict=True) if not leaf]
-            through = [seam for seam, leaf in zip(between, apart, strict=True) if not leaf]
-            walks = [_walk([*own[:1], *seamed], through)]
-            walks += [
-                _unseamed([d for d in loop if joinable(d)])
-                for loop, leaf in zip(own[1:], apart, strict=True)
-                if leaf
-            ]
+        between = None if seams is None else seams_of.get(cell.id, [])
+        apart = [
+            leaves and sum(strands[abs(d)] for d in loop if joinable(d)) == 1 for loop in own[1:]
+        ]
+        walks = _walks(own, between, apart)
         cyclic = []
         for walk in walks:
             first = len(found)
             for dart, through in walk:
                 if through is None:
-                    own_colors = joinable(dart)
-                    count = strands[abs(dart)] if own_colors else 0
+                    shared = joinable(dart)
+                    count = strands[abs(dart)] if shared else 0
                 else:
-                    own_colors, count = colors[cell.id], through.strands
+                    shared, count = colors[cell.id], through.strands
                 numbers = range(1, count + 1)
                 order = numbers if dart > 0 else reversed(numbers)
-                found += [((dart, strand), cell.id, own_colors) for strand in order]
+                found += [((dart, strand), cell.id, shared) for strand in order]
             cyclic.append(tuple(range(first, len(found))))
         lists.append(tuple(cyclic))
     index = {name: number for number, (name, _, _) in enumerate(found)}
-    darts = tuple(
-        Dart(name, cell, index[-name[0], name[1]], own) for name, cell, own in found
-    )
+    darts = tuple(Dart(name, cell, index[-name[0], name[1]], own) for name, cell, own in found)
     return DartGraph(darts, tuple(lists), tuple(colors), tuple(seams or ()))
 
 
@@ -232,6 +219,26 @@ def _joinable(instance: Instance, colors: Sequence[frozenset[int]], dart: int) -
         return frozenset()
     edge = instance.edge(dart)
     return (colors[edge.left] & colors[edge.right]).intersection(own)
+
+
+def _walks(
+    loops: Sequence[tuple[int, ...]], seams: Sequence[Seam] | None, apart: Sequence[bool]
+) -> list[list[tuple[int, Seam | None]]]:
+    """The lists of a cell: one that seams make, and the loops that stay apart.
+
+    Args:
+        seams: one for each loop but the first; None if all of them stay apart.
+        apart: whether each loop but the first does.
+    """
+    if seams is None:
+        return [_unseamed(loop) for loop in loops]
+    others = list(zip(loops[1:], seams, apart, strict=True)) if loops else []
+    seamed = [loop for loop, _, own in others if not own]
+    through = [seam for _, seam, own in others if not own]
+    return [
+        _walk([*loops[:1], *seamed], through),
+        *(_unseamed(loop) for loop, _, own in others if own),
+    ]
 
 
 def _unseamed(loop: Sequence[int]) -> list[tuple[int, Seam | None]]:

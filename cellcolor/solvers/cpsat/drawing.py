@@ -190,7 +190,10 @@ def seamed(
     seams = [replace(seam, strands=widths.get(seam.id, 0)) for seam in places]
     made = dart_graph(instance, graph.colors, strands, seams, loops)
     found = [
-        [Block(block.color, {made.number_of[name] for name in names}) for block, names in own.parts()]
+        [
+            Block(block.color, {made.number_of[name] for name in names})
+            for block, names in own.parts()
+        ]
         for own in lists
     ]
     return made, canonical(made, found)

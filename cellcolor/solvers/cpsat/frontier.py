@@ -15,9 +15,9 @@ from typing import NamedTuple
 
 from cellcolor.deadline import Deadline
 from cellcolor.errors import TooLarge
+from cellcolor.solvers.cpsat.cell_divisions import ZERO, Blocks, divisions
 from cellcolor.solvers.cpsat.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block, Painting
-from cellcolor.solvers.cpsat.cell_divisions import ZERO, Blocks, divisions
 from cellcolor.solvers.cpsat.shown_colors import (
     Choices,
     ShownColors,

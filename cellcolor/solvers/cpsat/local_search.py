@@ -14,9 +14,9 @@ A move that leaves more segments is taken back, except for a few that leave one 
 
 from __future__ import annotations
 
-import random
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from heapq import heappop, heappush
+from random import Random
 
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.solvers.cpsat.dart_graph import DartGraph
@@ -62,7 +62,7 @@ class Recoloring:
     Args:
         graph: the sector graph.
         colors: of each node.
-        seed: of the choice of moves.
+        rng: chooses the moves.
         deadline: of getting ready, which takes time by the size of the graph.
 
     Attributes:
@@ -70,10 +70,10 @@ class Recoloring:
     """
 
     def __init__(
-        self, graph: SectorGraph, colors: Sequence[int], seed: int, deadline: Deadline = NEVER
+        self, graph: SectorGraph, colors: Sequence[int], rng: Random, deadline: Deadline = NEVER
     ) -> None:
         self._graph = graph
-        self._chance = random.Random(seed)
+        self._chance = rng
         self._painted = PaintedSectors(graph, colors, deadline)
         # What changing a node costs besides 1, in units of the rise, which grows with each move.
         self._price = [0.0] * len(colors)
@@ -273,7 +273,7 @@ class Recoloring:
 def recolor(
     graph: DartGraph,
     painting: Painting,
-    seed: int,
+    rng: Random,
     enough: int,
     deadline: Deadline,
     moves: int,
@@ -283,14 +283,14 @@ def recolor(
 
     Args:
         painting: a canonical painting of it.
-        seed: of the choice of moves.
+        rng: chooses the moves.
         enough: segments that are few enough.
         moves: for each segment, before nothing better is expected.
         rings: of sectors in a cell. One leaves room enough in most cells. With none, each cell is
             painted whole, which makes a move several times quicker.
     """
     sectors = sector_graph(graph, rings)
-    search = Recoloring(sectors, sector_colors(sectors, painting)[0], seed, deadline)
+    search = Recoloring(sectors, sector_colors(sectors, painting)[0], rng, deadline)
     fewest = len(segments_of(graph, painting))
     in_vain = 0
     while True:

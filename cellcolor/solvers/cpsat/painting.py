@@ -58,7 +58,7 @@ def segments_of(graph: DartGraph, painting: Painting) -> list[set[int]]:
     holder = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
     reached = [-1] * len(blocks)
     segments: list[set[int]] = []
-    for first, block in enumerate(blocks):
+    for first in range(len(blocks)):
         if reached[first] >= 0:
             continue
         reached[first] = len(segments)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from math import ceil, isfinite
+from random import Random
 
 from ortools.sat.python import cp_model
 
@@ -30,6 +31,9 @@ from cellcolor.solvers.interface import Options
 
 FEW_STRANDS = 2
 """Strands of a seam in local search."""
+
+MOST_RINGS = 3
+"""Rings of sectors in local search, one more from turn to turn. More leave more room."""
 
 FEW_MOVES, MOVES = 5, 300
 """Moves of local search in vain, for each segment, before nothing better is expected: from a start
@@ -71,9 +75,9 @@ class Part:
         self.planner: Planner | None = None
         self.model_size: ModelSize | None = None
         self.notes: list[str] = []
-        self._planned: Sequence[Region] = ()
+        self._planned: Sequence[Region] = self.regions
         self._running: int | None = None
-        self.best = self._start = self._whole([min(own) for own in self._colors])
+        self.best = self._whole([min(own) for own in self._colors])
         self.segments = len(segments_of(*self.best))
 
     @property
@@ -106,9 +110,7 @@ class Part:
         self.cover_bound = max(self.bound, found.bound)
         self._planned = found.regions
         self._raise_to(found.bound, "cover", for_surface=True)
-        color_of = {cell: color for color, cells in found.regions for cell in cells}
-        self._start = self._whole([color_of[cell.id] for cell in self.instance.cells])
-        self._keep(*self._start)
+        self._keep(*self._covered(found.regions))
 
     def solve_exactly(self, deadline: Deadline) -> None:
         """The minimum of a part whose shape allows a recursion (``exact_shapes``)."""
@@ -119,11 +121,17 @@ class Part:
         if max(self._widest.values(), default=1) == 1:
             self._raise_to(found.segments, "exact", for_surface=False)
 
-    def improve(self, seed: int, deadline: Deadline) -> None:
-        """Local search from cells painted whole, then from the best division."""
-        seed += self._options.seed
-        self._recolor(*self._start, seed, deadline, FEW_MOVES, rings=0)
-        self._recolor(*self.best, seed, deadline, MOVES)
+    def improve(self, turn: int, deadline: Deadline) -> None:
+        """Local search from cells painted whole, then from the best division.
+
+        What it finds differs from start to start, so the regions of the last cover or plan come in
+        another order each time.
+        """
+        rng = Random(self._options.seed + turn)
+        rings = 1 + turn % MOST_RINGS
+        start = self._covered(rng.sample(self._planned, len(self._planned)))
+        self._recolor(*start, rng, deadline, FEW_MOVES, rings)
+        self._recolor(*self.best, rng, deadline, MOVES, rings)
 
     def separate(self, effort: float, deadline: Deadline) -> None:
         """Plan segments that respect separating pairs, each plan a start of local search.
@@ -217,7 +225,12 @@ class Part:
         start = self._whole([color_of[cell.id] for cell in self.instance.cells])
         self._keep(*start)
         if not self.done:
-            self._recolor(*start, self._options.seed, deadline, FEW_MOVES)
+            self._recolor(*start, Random(self._options.seed), deadline, FEW_MOVES)
+
+    def _covered(self, regions: Sequence[Region]) -> tuple[DartGraph, Painting]:
+        """Every cell painted whole in the color of the last region that has it."""
+        color_of = {cell: color for color, cells in regions for cell in cells}
+        return self._whole([color_of[cell.id] for cell in self.instance.cells])
 
     def _whole(self, colors: Sequence[int]) -> tuple[DartGraph, Painting]:
         """Every cell painted whole."""
@@ -227,13 +240,13 @@ class Part:
         self,
         graph: DartGraph,
         painting: Painting,
-        seed: int,
+        rng: Random,
         deadline: Deadline,
         moves: int,
         rings: int = 1,
     ) -> None:
         """What local search makes of a canonical painting, kept if it is the best so far."""
-        for better in recolor(graph, painting, seed, self.bound, deadline, moves, rings):
+        for better in recolor(graph, painting, rng, self.bound, deadline, moves, rings):
             self._keep(graph, better)
             if self.done:
                 return

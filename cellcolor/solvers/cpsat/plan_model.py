@@ -23,8 +23,8 @@ from ortools.sat.python import cp_model
 SeparatedCells = Mapping[
     tuple[int, int], Sequence[tuple[Sequence[frozenset[int]], Sequence[frozenset[int]]]]
 ]
-"""For the numbers of two color regions their separations: two sets of merged cells of the first, one
-for each end, and groups of merged cells of the second."""
+"""For the numbers of two color regions their separations: two sets of merged cells of the first,
+one for each end, and groups of merged cells of the second."""
 
 SegmentName = tuple[int, int]
 """The number of a color region, and that of one of its copies."""

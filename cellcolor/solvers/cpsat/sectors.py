@@ -96,10 +96,11 @@ class SectorGraph:
 
         A face is a closed walk that leaves each sector by the link after the one it came by.
         """
-        following: dict[tuple[int, int], tuple[int, int]] = {}
-        for own in self.around:
-            for half, after in zip(own, own[1:] + own[:1], strict=True):
-                following[half] = after
+        following = {
+            half: after
+            for own in self.around
+            for half, after in zip(own, own[1:] + own[:1], strict=True)
+        }
         face: dict[tuple[int, int], int] = {}
         count = 0
         for first in following:

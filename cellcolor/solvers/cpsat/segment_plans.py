@@ -133,9 +133,7 @@ class Planner:
                 self._copies[region] += 1
         self._last = {
             segment: {
-                kind
-                for kind, own in built.touched[segment].items()
-                if solver.boolean_value(own)
+                kind for kind, own in built.touched[segment].items() if solver.boolean_value(own)
             }
             for segment, literal in built.in_use.items()
             if solver.boolean_value(literal)

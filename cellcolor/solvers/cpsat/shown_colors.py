@@ -1,8 +1,9 @@
 """Rule 5 for a part of the cells: what darts in state 0, zeros, can show towards the others.
 
-Each zero shows one of two colors, that of the sub-cell before it or after it along the border. To choose them so
-that no edge shows one joinable color on both sides is a 2-satisfiability problem. When only some
-cells are painted, all that matters of it is what it says about the zeros towards the other cells.
+Each zero shows one of two colors, that of the sub-cell before it or after it along the border. To
+choose them so that no edge shows one joinable color on both sides is a 2-satisfiability problem.
+When only some cells are painted, all that matters of it is what it says about the zeros towards the
+other cells.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import pairwise, product
 from typing import NamedTuple
 
-from cellcolor.solvers.cpsat.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.cell_divisions import Blocks
+from cellcolor.solvers.cpsat.dart_graph import DartGraph
 
 Clause = tuple[int, ...]
 """One or two literals in ascending order, at least one of which is true. ``dart + 1`` says that the

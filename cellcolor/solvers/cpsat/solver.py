@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from importlib.metadata import version
 from math import isfinite
 
@@ -35,10 +36,13 @@ from cellcolor.solvers.cpsat.parts import loops_of, seam_places, split
 from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
 
-SHARES = {"exact": 1 / 4, "improve": 1 / 4, "separate": 1 / 2, "model": 3 / 4, "turn": 1 / 4}
+SHARES = {"exact": 1 / 4, "improve": 1 / 5, "separate": 1 / 2, "model": 2 / 3, "turn": 1 / 4}
 """The share of the time that is left which each step gets."""
 
-EFFORT, GROWTH = 0.5, 4.0
+TURNS = 3
+"""Local searches from different starts before the model."""
+
+EFFORT, GROWTH = 0.5, 2.0
 """Deterministic seconds for a plan, and the factor by which they grow from turn to turn."""
 
 RESERVES = 4
@@ -83,9 +87,7 @@ class CpSatSolver:
 class _Search:
     """The best division of the whole instance so far, put together from its parts."""
 
-    def __init__(
-        self, instance: Instance, options: Options, progress: OnProgress | None
-    ) -> None:
+    def __init__(self, instance: Instance, options: Options, progress: OnProgress | None) -> None:
         self._instance, self._options, self._progress = instance, options, progress
         self._loops = loops_of(instance)
         self._places = seam_places(instance, self._loops)
@@ -100,10 +102,10 @@ class _Search:
     def run(self) -> None:
         """Solve until every part is proved, or there is no time left.
 
-        A set cover is the first bound, and a first division. Local search improves the division.
-        Separating pairs raise the bound, and each plan that respects them is a start of local
-        search. Then the complete model is solved, hinted and bounded by what is known. What is
-        still open is improved in turns until the deadline.
+        A set cover is the first bound, and a first division. Trees and hubs are solved exactly.
+        Local search improves the division. Separating pairs raise the bound, and each plan that
+        respects them is a start of local search. Then the complete model is solved, hinted and
+        bounded by what is known. What is still open is improved in turns until the deadline.
 
         Raises:
             OutOfTime: the deadline, or an interrupt.
@@ -117,15 +119,16 @@ class _Search:
         self._report()
         self._each(Part.cover, 1.0)
         self._each(Part.solve_exactly, SHARES["exact"])
-        self._each(lambda part, its: part.improve(0, its), SHARES["improve"])
-        self._each(lambda part, its: part.separate(EFFORT, its), SHARES["separate"])
+        self._each(partial(Part.improve, turn=0), SHARES["improve"])
+        self._each(partial(Part.separate, effort=EFFORT), SHARES["separate"])
+        for turn in range(1, TURNS):
+            self._each(partial(Part.improve, turn=turn), SHARES["improve"])
         self._each(Part.solve_model, SHARES["model"])
-        turn = 1
+        turn = TURNS
         while isfinite(self._deadline.moment) and any(not part.done for part in self._parts):
             self._deadline.check()
-            effort = EFFORT * GROWTH**turn
-            self._each(lambda part, its: part.improve(turn, its), SHARES["turn"])  # noqa: B023
-            self._each(lambda part, its: part.separate(effort, its), SHARES["turn"])  # noqa: B023
+            self._each(partial(Part.improve, turn=turn), SHARES["turn"])
+            self._each(partial(Part.separate, effort=EFFORT * GROWTH**turn), SHARES["turn"])
             turn += 1
 
     def answer(self) -> Answer:
@@ -140,12 +143,15 @@ class _Search:
         sizes = [part.model_size for part in self._parts if part.model_size is not None]
         model = None
         if sizes:
-            variables, constraints = (size.variables for size in sizes), (s.constraints for s in sizes)
+            variables, constraints = (
+                (size.variables for size in sizes),
+                (s.constraints for s in sizes),
+            )
             model = ModelSize(sum(variables), sum(constraints))
         return Answer(division, graph.seams, self._bounds(), tuple(sorted(notes)), model)
 
-    def _each(self, step: Callable[[Part, Deadline], None], share: float) -> None:
-        """One step for each open part, in a share of the time that is left.
+    def _each(self, step: Callable[..., None], share: float) -> None:
+        """One step of each open part, in a share of the time that is left.
 
         Easy parts come first and leave most of their time to the others.
         """
@@ -154,7 +160,7 @@ class _Search:
         for number, part in enumerate(left):
             self._deadline.check()
             try:
-                step(part, deadline.share(1 / (len(left) - number)))
+                step(part, deadline=deadline.share(1 / (len(left) - number)))
             except OutOfTime as error:
                 if isinstance(error, KeyboardInterrupt):
                     raise
