@@ -13,7 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 from ortools.sat.python import cp_model
-from rooms import RED, hub, room
+from rooms import RED, hub, petal_cells
+from rooms import graph as cells_of
 
 import cellcolor
 from cellcolor.checker.division import check_division, check_solution
@@ -63,7 +64,7 @@ def small(family: str, seed: int) -> Instance:
 
 
 TRIPLE = Instance.read(PAPER / "triple-junction.json")
-LEAVES = room((0, 1, 0, 1), (0,))
+LEAVES = cells_of(((0, 1), (1, 2, 3, 4), (5,)), *petal_cells(0, 1, 0, 1, 0))
 """Around a cell, red and blue in turn, and a red cell in a hole of it."""
 
 
