@@ -84,13 +84,13 @@ class Mark:
         label: what is written on them.
         text: what they are.
         cells: the cells.
-        group: marks of one group have one color; None for cells that are taken away.
+        group: marks of one group have one color.
     """
 
     label: str
     text: str
     cells: Collection[int]
-    group: int | None
+    group: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,13 +177,14 @@ class BoundKind:
         return because + self.objective
 
 
-def marks_of(
-    instance: Instance, cells: Sequence[int], hubs: Sequence[int] = ()
-) -> tuple[Mark, ...]:
-    """Cells, each by itself, and hubs that are taken away, with their colors."""
-    named = [(cell, "cell", number) for number, cell in enumerate(cells)]
-    marks = []
-    for cell, what, group in [*named, *((hub, "hub", None) for hub in hubs)]:
-        colors = listed(instance.colors[color] for color in instance.cells[cell].colors)
-        marks.append(Mark(str(cell), f"{what} {cell}: {colors}", (cell,), group))
-    return tuple(marks)
+def marks_of(instance: Instance, cells: Sequence[int]) -> tuple[Mark, ...]:
+    """Cells, each by itself, with their colors."""
+    return tuple(
+        Mark(
+            str(cell),
+            f"cell {cell}: {listed(instance.colors[c] for c in instance.cells[cell].colors)}",
+            (cell,),
+            number,
+        )
+        for number, cell in enumerate(cells)
+    )
