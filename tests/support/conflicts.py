@@ -1,4 +1,4 @@
-"""Pairs of segments that would have to cross, read off the separations of two color regions."""
+"""Pairs of segments that would have to cross, read off what two color regions separate."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from ortools.sat.python import cp_model
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
-from cellcolor.deadline import NEVER, Deadline
+from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.bounds.reductions import enough_crossings
 from cellcolor.solvers.cpsat.dart_graph import complete_graph
@@ -38,7 +38,7 @@ class CompleteModel(Formulation):
 
     Raises:
         InputError: there is no such group.
-        TooLarge: there are too many sectors.
+        TooLarge: there are too many sectors, or strands of seams.
         OutOfTime: the deadline came first.
     """
 
@@ -91,7 +91,10 @@ class CompleteModelSolver:
         """A division with the fewest segments, or the best found before the deadline."""
         if not instance.cells:
             return Answer((), (), ())
-        built = CompleteModel(instance, options.strands, deadline=options.deadline)
+        try:
+            built = CompleteModel(instance, options.strands, deadline=options.deadline)
+        except OutOfTime:
+            return Answer(None, (), ())
         runner = Runner(options)
         solver = runner.portfolio(options.deadline)
         found: list[int] = []

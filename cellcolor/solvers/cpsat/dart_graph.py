@@ -16,7 +16,11 @@ from typing import NamedTuple
 from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Seam
+from cellcolor.errors import TooLarge
 from cellcolor.solvers.cpsat.parts import Loops, loops_of, seam_places
+
+MOST_STRANDS = 100_000
+"""The most strands of seams in a complete graph. From loop to loop of a cell they double."""
 
 
 class Dart(NamedTuple):
@@ -207,9 +211,16 @@ def complete_graph(
         strands: of each live edge.
         loops: the loops of each cell between which its seams run.
         places: where they run, in the order of cells and loops.
+
+    Raises:
+        TooLarge: seams would need too many strands.
     """
     colors = tuple(frozenset(cell.colors) for cell in instance.cells)
     seams = widened(instance, colors, strands, loops, places, None, leaves=True)
+    count = sum(seam.strands for seam in seams)
+    if count > MOST_STRANDS:
+        message = f"{count} strands of seams, {MOST_STRANDS} are the most"
+        raise TooLarge(f"The model was not built: it would need {message}.")
     return dart_graph(instance, colors, strands, seams, loops, leaves=True)
 
 

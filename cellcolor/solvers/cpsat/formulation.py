@@ -14,7 +14,7 @@ from ortools.sat.python import cp_model
 
 from cellcolor.data.solution import ModelSize
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.errors import InputError, TooLarge
+from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, add_variables
 from cellcolor.solvers.cpsat.dart_graph import DartGraph
@@ -81,11 +81,8 @@ class Formulation:
         wanted = REDUNDANT.keys() if groups is None else groups
         if unknown := sorted(set(wanted) - REDUNDANT.keys()):
             raise InputError(None, "groups", f"there is no group {unknown[0]!r}")
-        self.sectors, self.regions = sector_graph(graph, deadline=deadline), regions
-        literals = sum(len(self.colors(sector)) for sector in range(len(self.sectors.cell)))
-        if literals > MOST_LITERALS:
-            message = f"{literals} literals for the colors of sectors, {MOST_LITERALS} are the most"
-            raise TooLarge(f"The model was not built: it would need {message}.")
+        self.sectors = sector_graph(graph, None, deadline, MOST_LITERALS)
+        self.regions = regions
         self.model = cp_model.CpModel()
         self.variables = Variables()
         self.region_of = {(c, color): n for n, (color, cells) in enumerate(regions) for c in cells}

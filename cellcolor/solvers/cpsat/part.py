@@ -180,8 +180,8 @@ class Part:
 
     def _minimize(self, strands: dict[int, int], deadline: Deadline) -> None:
         part = self._part
-        graph = complete_graph(self.instance, strands, part.loops, part.seams)
         try:
+            graph = complete_graph(self.instance, strands, part.loops, part.seams)
             built = Formulation(graph, self.regions, deadline=deadline)
         except TooLarge as error:
             self.notes.append(str(error))

@@ -14,6 +14,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import TooLarge
 from cellcolor.solvers.cpsat.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block, Painting
 
@@ -115,7 +116,10 @@ class SectorGraph:
 
 
 def sector_graph(
-    graph: DartGraph, most_rings: int | None = None, deadline: Deadline = NEVER
+    graph: DartGraph,
+    most_rings: int | None = None,
+    deadline: Deadline = NEVER,
+    most_colors: int | None = None,
 ) -> SectorGraph:
     """Cut every cell into sectors, with as many rings as every scheme can be drawn in.
 
@@ -125,12 +129,26 @@ def sector_graph(
     Args:
         graph: the first loop of each cell is a cyclic list, the others are leaf darts.
         most_rings: no cell gets more rings; some schemes may then have no room.
+        most_colors: of all sectors together, each in any color of its cell.
+
+    Raises:
+        TooLarge: there would be more; what is too large is not made.
     """
     made = SectorGraph(graph)
     made.at.extend([0] * len(graph.darts))
+    left = most_colors
     for cell, loops in enumerate(graph.loops):
         deadline.check()
-        _add_sectors(made, cell, loops, most_rings)
+        rings = _rings_of(made, cell, loops, most_rings)
+        if left is not None:
+            count = len(loops[0]) * rings + len(loops) if loops else 1
+            left -= count * len(graph.colors[cell])
+            if left < 0:
+                raise TooLarge(
+                    "The model was not built: "
+                    f"it would need more than {most_colors} literals for the colors of sectors."
+                )
+        _add_sectors(made, cell, loops, rings)
     halves: list[list[tuple[int, int]]] = [[] for _ in made.cell]
     number_of = {}
     for number, dart in enumerate(graph.darts):
@@ -146,18 +164,18 @@ def sector_graph(
     return made
 
 
-def _add_sectors(
-    made: SectorGraph,
-    cell: int,
-    loops: Sequence[Sequence[int]],
-    most_rings: int | None,
-) -> None:
+def _rings_of(
+    made: SectorGraph, cell: int, loops: Sequence[Sequence[int]], most_rings: int | None
+) -> int:
+    if len(made.graph.colors[cell]) < 2 or not loops:
+        return 0
+    rings = _enough_rings([made.graph.darts[dart].colors for dart in loops[0]], len(loops) > 1)
+    return rings if most_rings is None else min(rings, most_rings)
+
+
+def _add_sectors(made: SectorGraph, cell: int, loops: Sequence[Sequence[int]], rings: int) -> None:
     darts = loops[0] if loops else ()
     leaves = [loop[0] for loop in loops[1:]]
-    rings = 0
-    if len(made.graph.colors[cell]) > 1:
-        rings = _enough_rings([made.graph.darts[dart].colors for dart in darts], bool(leaves))
-        rings = rings if most_rings is None else min(rings, most_rings)
     first, count = len(made.cell), len(darts)
     centers = 1 if darts or not leaves else 0
     end = first + count * rings + centers + len(leaves)
