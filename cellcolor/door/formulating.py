@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import TYPE_CHECKING
 
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.subject import Solvable, open_subject
 from cellcolor.errors import InputError
 from cellcolor.solvers import checked
-from cellcolor.solvers.cpsat import CompleteModel
+from cellcolor.solvers.cpsat import CompleteModel, CpSolver
 from cellcolor.solvers.interface import Answer, Options
-
-if TYPE_CHECKING:
-    from ortools.sat.python import cp_model
 
 
 class Formulation(CompleteModel):
@@ -25,7 +21,7 @@ class Formulation(CompleteModel):
     the fewest segments, not for all. Leave out those that your constraints may contradict.
     """
 
-    def division(self, solver: cp_model.CpSolver) -> Solution:
+    def division(self, solver: CpSolver) -> Solution:
         """The division that a solver has found, after the checker has seen it.
 
         It claims no bound, because constraints of your own may exclude better divisions.
