@@ -12,8 +12,7 @@ from typing import Any, Literal
 
 from cellcolor.checker.color_regions import ColorRegion
 from cellcolor.checker.parts_proof import verify_cells, verify_parts
-from cellcolor.checker.plan_search import BudgetExceeded
-from cellcolor.checker.proof import Proof, Refused
+from cellcolor.checker.proof import BudgetExceeded, Proof, Refused
 from cellcolor.data.bound_kinds import certificate_of
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
@@ -61,7 +60,6 @@ VERIFIERS: dict[str, Callable[[Proof, Any, int], None]] = {
     "strangers": verify_cells,
     "cover": verify_cells,
     "conflicts": verify_parts,
-    "hubs": verify_parts,
 }
 """What proves a bound, given its certificate and value, or raises ``Refused``; by the kind's name.
 They are this package's own: what says ``verified`` does not rest on what else is installed."""

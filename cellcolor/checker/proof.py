@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from cellcolor.checker.color_regions import ColorRegion
-from cellcolor.checker.plan_search import BudgetExceeded
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline
 
@@ -14,6 +13,10 @@ _NAMED = 20
 
 class Refused(Exception):
     """A certificate does not prove its bound; the text says why."""
+
+
+class BudgetExceeded(Exception):
+    """More choices than were allowed, or the deadline came first."""
 
 
 class Proof:

@@ -84,13 +84,13 @@ class Mark:
         label: what is written on them.
         text: what they are.
         cells: the cells.
-        group: marks of one group have one color; None for cells that are taken away.
+        group: marks of one group have one color.
     """
 
     label: str
     text: str
     cells: Collection[int]
-    group: int | None
+    group: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,11 +165,14 @@ class BoundKind:
         because: why no division has fewer segments, a clause; empty for what holds for the
             solution's strands only.
         objective: what it bounds, and what has to be covered for that, a sentence.
+        by: what proves a minimum for the solution's strands; empty for what holds for the surface
+            only.
         certificate: what a bound of this kind can be verified by; None if it is taken on trust.
     """
 
     because: str = ""
     objective: str = ""
+    by: str = ""
     certificate: type[Certificate] | None = None
 
     def __str__(self) -> str:
@@ -177,13 +180,14 @@ class BoundKind:
         return because + self.objective
 
 
-def marks_of(
-    instance: Instance, cells: Sequence[int], hubs: Sequence[int] = ()
-) -> tuple[Mark, ...]:
-    """Cells, each by itself, and hubs that are taken away, with their colors."""
-    named = [(cell, "cell", number) for number, cell in enumerate(cells)]
-    marks = []
-    for cell, what, group in [*named, *((hub, "hub", None) for hub in hubs)]:
-        colors = listed(instance.colors[color] for color in instance.cells[cell].colors)
-        marks.append(Mark(str(cell), f"{what} {cell}: {colors}", (cell,), group))
-    return tuple(marks)
+def marks_of(instance: Instance, cells: Sequence[int]) -> tuple[Mark, ...]:
+    """Cells, each by itself, with their colors."""
+    return tuple(
+        Mark(
+            str(cell),
+            f"cell {cell}: {listed(instance.colors[c] for c in instance.cells[cell].colors)}",
+            (cell,),
+            number,
+        )
+        for number, cell in enumerate(cells)
+    )

@@ -22,8 +22,8 @@ from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_
 from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import model_search
-from cellcolor.solvers.cpsat.model import full as model_module
 from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph, seams_of
+from cellcolor.solvers.cpsat.model import full as model_module
 from cellcolor.solvers.cpsat.model.full import full_model, model_size
 from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, division_of
 from cellcolor.solvers.cpsat.parts import split

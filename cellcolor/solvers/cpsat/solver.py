@@ -222,6 +222,7 @@ class _Search:
             bounds.append(Bound("crossings", surface, "surface"))
             bounds.append(Bound("model", bound, "strands"))
         elif "exact" in by:
+            bounds.append(Bound("exact", surface, "surface"))
             bounds.append(Bound("exact", bound, "strands"))
         return tuple(bounds)
 

@@ -20,6 +20,7 @@ from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import planar_graph, voronoi
 from cellcolor.solvers.cpsat.dart_graph import dart_graph, seams_of
+from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.painting import (
     Block,
     Painting,
@@ -27,7 +28,6 @@ from cellcolor.solvers.cpsat.painting import (
     division_of,
     segments_of,
 )
-from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.part_search import PartSearch
 from cellcolor.solvers.cpsat.parts import split
 from cellcolor.solvers.cpsat.routes.recoloring import Recoloring, recolor

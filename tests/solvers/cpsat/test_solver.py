@@ -22,8 +22,8 @@ from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.cpsat.model.full import add_hint, full_model
-from cellcolor.solvers.cpsat.painting import division_of, painting_of
 from cellcolor.solvers.cpsat.model_runs import Runner
+from cellcolor.solvers.cpsat.painting import division_of, painting_of
 from cellcolor.solvers.cpsat.part_search import PartSearch
 from cellcolor.solvers.cpsat.parts import split
 from cellcolor.solvers.interface import Options, Start
