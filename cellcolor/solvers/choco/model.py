@@ -177,7 +177,7 @@ class Ranks:
     def _roots(self) -> None:
         """Sub-cells without a parent are roots, and a cell with a root is undivided.
 
-        docs/encodings.md explains why every segment has such a root. With it no dart of the cell
+        docs/formulation.md explains why every segment has such a root. With it no dart of the cell
         leads up, and the equation says that the root is the cell's only sub-cell.
         """
         for number, cell in enumerate(self.problem.cells):
