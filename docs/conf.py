@@ -63,7 +63,10 @@ nitpick_ignore_regex = [
         r"py:class",
         r"(.*\.)?(T|Kind|_\w+|FieldInfo|TypeForm|ConfigDict|NoneType|Handler|DataclassInstance)",
     ),
-    (r"py:class", r"Ge|Gt|Le|Lt|MinLen|[\d.e-]+|dict\[str|tuple\[~pathlib\.Path"),
+    (
+        r"py:class",
+        r"Ge|Gt|Le|Lt|MinLen|[\d.e-]+|dict\[(str|int)|tuple\[~pathlib\.Path|list\[list\[tuple\[int",
+    ),
     # Signatures of the front door that Sphinx takes as they are written: they name classes that
     # only type checkers import there.
     (

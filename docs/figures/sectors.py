@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 from drawing import FILL, panels
-from examples import BLUE, GREEN, RED, YELLOW
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle, Wedge
@@ -22,6 +21,7 @@ from cellcolor.pictures.palette import INK
 from cellcolor.solvers.cpsat.complete_model import CompleteModel
 from cellcolor.solvers.cpsat.drawing import sector_colors
 from cellcolor.solvers.cpsat.painting import Block
+from examples import BLUE, GREEN, RED, YELLOW, Array
 
 COLORS = RED, BLUE, GREEN, YELLOW, RED
 DARTS = (2, 3), (1, 4), (0, 5), (9, 6), (8, 7)
@@ -54,7 +54,7 @@ def main(folder: Path) -> None:
     figure.savefig(folder / "sectors.png", dpi=110)
 
 
-def _at(dart: float) -> np.ndarray:
+def _at(dart: float) -> Array:
     angle = np.deg2rad(36 * dart)
     return np.array([np.cos(angle), np.sin(angle)])
 
