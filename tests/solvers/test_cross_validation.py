@@ -189,7 +189,7 @@ def drawn_graphs(family: str, seeds: range) -> Iterator[Instance]:
 def test_the_model_says_what_the_depth_first_search_says(family: str) -> None:
     """300 graphs in all: discs, holes, cracks, several parts, hubs. The model is built for each.
 
-    One seed in three is solved without redundant constraints, and without a hint.
+    One seed in three is solved without a hint.
     """
     compared = 0
     for seed, instance in enumerate(drawn_graphs(family, range(300))):
@@ -208,7 +208,7 @@ def test_the_model_says_what_the_depth_first_search_says(family: str) -> None:
             report = check_division(instance, answer.division, answer.seams)
             assert report.valid and report.segments == found, instance.name
         else:
-            built = CompleteModel(instance, groups=())
+            built = CompleteModel(instance)
             built.model.clear_hints()
             solver = cp_model.CpSolver()
             solver.parameters.num_workers = 1
