@@ -84,17 +84,6 @@ def test_stored_solutions_are_of_the_graphs_that_they_are_named_after() -> None:
                 assert len(segments) == upper.value
 
 
-def test_no_bound_says_model_where_none_was_built() -> None:
-    said = 0
-    for path in sorted((INSTANCES / SOLUTIONS).glob("*.json")):
-        document = json.loads(path.read_text(encoding="utf-8"))
-        kinds = {bound["kind"] for bound in document["bounds"]}
-        if kinds & {"model", "crossings"}:
-            assert document["model"]["variables"] > 0, path.name
-            said += 1
-    assert said
-
-
 HARD = [
     entry.name
     for entry in LIBRARY.entries

@@ -221,8 +221,8 @@ def test_the_model_says_what_the_depth_first_search_says(family: str) -> None:
 
 
 SCENES = {
-    "half_pipe": 3324,
-    "hemisphere_flat": 1656,
+    "half_pipe": 4,
+    "hemisphere_flat": None,
     "hemisphere_tilted": None,
     "square": 2,
     "wok": 16,
