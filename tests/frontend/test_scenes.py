@@ -18,6 +18,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
@@ -100,6 +101,19 @@ def test_lift_offs_at_higher_resolutions(name: str, vertices: int) -> None:
     surface = built(name, vertices).surface
     solution = solve(decompose(surface), Options(deadline=Deadline.after(300), workers=2))
     assert solution.status == "optimal" and solution.lift_offs == LIFT_OFFS[name]
+
+
+@pytest.mark.parametrize("name", LIFT_OFFS)
+def test_torques_exclude_nothing_at_20_n(name: str) -> None:
+    """Nor do joint limits and the tool's contact region, in any branch that has a solution."""
+    prepared = prepare(shipped(name, 500))
+    assert prepared.setup.task.normal_force_n == 20.0
+    vertices, normals = prepared.surface.vertices, prepared.surface.normals
+    solutions = prepared.arm.inverse(vertices, -normals).reshape(-1, 6)
+    failures = prepared.judge.all_failures(solutions[~np.isnan(solutions[:, 0])])
+    nothing = {test for test, failed in failures.items() if not failed.any()}
+    assert {"torque", "joint limits", "tip blocked"} <= nothing
+    assert "self collision" not in nothing
 
 
 def test_flat_hemisphere_is_not_fully_reachable_and_needs_four_colors() -> None:
