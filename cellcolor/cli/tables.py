@@ -22,7 +22,7 @@ from cellcolor.data.shares import (
     segment_rows,
     shares_of,
 )
-from cellcolor.data.solution import Solution, witness_in_words
+from cellcolor.data.solution import Solution
 from cellcolor.data.wording import count
 
 _SEGMENTS_SHOWN = 200
@@ -134,9 +134,9 @@ def _extent(solution: Solution) -> str:
 
 
 def _because(instance: Instance, solution: Solution) -> list[tuple[str, str]]:
-    """Why there cannot be fewer segments."""
-    reason = witness_in_words(instance, solution.witness) or solution.reason
-    return [] if reason is None else [("because", reason)]
+    """Why there cannot be fewer segments, or by what that is proved."""
+    told = (("because", solution.why_not_fewer(instance)), ("proved by", solution.proved_by))
+    return [(name, text) for name, text in told if text is not None]
 
 
 def _status(solution: Solution) -> str:

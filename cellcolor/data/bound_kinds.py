@@ -49,13 +49,13 @@ class CertifiedCells(Certificate):
 STRANGERS = BoundKind(
     "that many cells cannot share a segment, no two of them",
     "It holds for the number of segments, also where only those cells have to be covered.",
-    CertifiedCells,
+    certificate=CertifiedCells,
 )
 COVER = BoundKind(
     "fewer color regions cannot touch every cell",
     "It holds for the number of segments, also where only the cells of its certificate have to be "
     "covered.",
-    CertifiedCells,
+    certificate=CertifiedCells,
 )
 
 
@@ -150,9 +150,12 @@ def _conflict_shown(conflicts: Sequence[CertifiedCrossing], instance: Instance) 
 CONFLICTS = BoundKind(
     "fewer segments would have to cross each other",
     EVERY_CELL,
-    CertifiedParts,
+    certificate=CertifiedParts,
 )
 
+
+COMPLETE_MODEL = "the complete model"
+"""How texts call the model that a solution gives the size of."""
 
 _STRANDS = (
     "It holds for the number of segments, where every cell has to be covered, in divisions with "
@@ -164,11 +167,16 @@ KINDS = {
     "strangers": STRANGERS,
     "cover": COVER,
     "conflicts": CONFLICTS,
-    "crossings": BoundKind(
-        "the full model has nothing better, and more strands would be of no use", EVERY_CELL
+    "exact": BoundKind(
+        "a recursion over the graph has nothing better, and more strands would be of no use",
+        EVERY_CELL,
+        "a recursion over the graph",
     ),
-    "model": BoundKind("", _STRANDS),
-    "search": BoundKind("", _STRANDS),
+    "crossings": BoundKind(
+        f"{COMPLETE_MODEL} has nothing better, and more strands would be of no use", EVERY_CELL
+    ),
+    "model": BoundKind("", _STRANDS, COMPLETE_MODEL),
+    "search": BoundKind("", _STRANDS, "exhaustive search"),
 }
 """What cellcolor writes. A bound may be of another kind: it is kept, and taken on trust."""
 

@@ -165,11 +165,14 @@ class BoundKind:
         because: why no division has fewer segments, a clause; empty for what holds for the
             solution's strands only.
         objective: what it bounds, and what has to be covered for that, a sentence.
+        by: what proves a minimum for the solution's strands; empty for what holds for the surface
+            only.
         certificate: what a bound of this kind can be verified by; None if it is taken on trust.
     """
 
     because: str = ""
     objective: str = ""
+    by: str = ""
     certificate: type[Certificate] | None = None
 
     def __str__(self) -> str:

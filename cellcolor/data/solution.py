@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import combinations
 from os import PathLike
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveInt
 
-from cellcolor.data.bound_kinds import certificate_of, kind_of
-from cellcolor.data.bounds import Bound
+from cellcolor.data.bound_kinds import COMPLETE_MODEL, certificate_of, kind_of
+from cellcolor.data.bounds import Bound, Extent
 from cellcolor.data.cells_and_edges import DartName, twin
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance
@@ -120,6 +120,9 @@ class ModelSize(Value):
     variables: NonNegativeInt
     constraints: NonNegativeInt
 
+    def __str__(self) -> str:
+        return f"{self.variables:,} variables, {self.constraints:,} constraints"
+
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Solution(Document):
@@ -148,10 +151,11 @@ class Solution(Document):
             its kind in here; None where that is not said, as in files of version 1.
         coverage: the instance's, so that the solution alone gives the shares.
         notes: what was left out and why, a sentence each.
+        model: how large the complete model is, where one was built and solved.
     """
 
     FORMAT = "cellcolor/solution"
-    SINCE_VERSION_2 = ("bounds", "coverage", "notes", "instance.of")
+    ADDED = (("bounds", "coverage", "notes", "instance.of"), ("model",))
 
     instance: InstanceReference
     search_space: SearchSpace
@@ -173,6 +177,7 @@ class Solution(Document):
     bounds: tuple[Bound, ...] | None = None
     coverage: Coverage | None = None
     notes: tuple[str, ...] = ()
+    model: ModelSize | None = None
 
     def __post_init__(self) -> None:
         settle(self)
@@ -209,25 +214,43 @@ class Solution(Document):
                         return cells
         return ()
 
-    @property
-    def reason(self) -> str | None:
-        """Why no division of the surface is better, by the kind of its greatest bound.
+    def why_not_fewer(self, instance: Instance | None = None) -> str | None:
+        """Why no division of the surface has fewer segments, a clause.
 
-        None where nothing needs a reason (a single segment) or none is given in the self.
+        None if that is not proved, if it needs no reason (a single segment), or if none is known.
+
+        Args:
+            instance: what was solved, to name the cells of the proof where there are a few.
         """
         if not self.proved_for_surface or (self.segments or 0) < 2:
             return None
+        witness = None if instance is None else witness_in_words(instance, self.witness)
+        return witness or self._told("surface", "because")
+
+    @property
+    def proved_by(self) -> str | None:
+        """By what a minimum is proved that is one in the search space only, without ``by``.
+
+        None if there is no such proof, or if nothing is known of it.
+        """
+        if self.status != "optimal" or self.proved_for_surface:
+            return None
+        return self._told("strands", "by")
+
+    def _told(self, extent: Extent, member: Literal["because", "by"]) -> str | None:
+        """What the kind of the bound that proves the minimum says of itself."""
         for bound in self.bounds or ():
-            if bound.holds_for == "surface" and bound.value == self.surface_lower_bound:
-                return kind_of(bound).because or None
+            if bound.holds_for == extent and bound.value == self.segments:
+                told: str = getattr(kind_of(bound), member)
+                size = "" if self.model is None else f" ({self.model})"
+                return told.replace(COMPLETE_MODEL, COMPLETE_MODEL + size) or None
         return None
 
-    def in_words(self, reason: str | None = None) -> str:
+    def in_words(self, instance: Instance | None = None) -> str:
         """Segments, lift-offs and proof, like ``2 segments, 1 lift-off, optimal: proved for …``.
 
         Args:
-            reason: why there cannot be fewer segments, a clause, where more is known of it than the
-                solution's bounds say; only used if the number is proved for any division.
+            instance: what was solved, to name the cells of the proof where there are a few.
         """
         if self.segments is None or self.lift_offs is None:
             if self.coverage is not None and self.coverage.covered == 0:
@@ -235,12 +258,13 @@ class Solution(Document):
             return f"no division found; at least {count(self.lower_bound, 'segment')}"
         found = f"{count(self.segments, 'segment')}, {count(self.lift_offs, 'lift-off')}"
         if self.proved_for_surface:
-            reason = reason or self.reason
+            reason = self.why_not_fewer(instance)
             because = "" if reason is None else f", because {reason}"
             return f"{found}, optimal: proved for any division of the surface{because}"
         everywhere = f"any division of the surface has at least {self.surface_lower_bound}"
         if self.status == "optimal":
-            return f"{found}, optimal in the search space {self.search_space}; {everywhere}"
+            by = "" if self.proved_by is None else f", by {self.proved_by}"
+            return f"{found}, optimal in the search space {self.search_space}{by}; {everywhere}"
         return (
             f"{found}, not proved to be the fewest: at least {self.lower_bound} in the search "
             f"space {self.search_space}; {everywhere}"
@@ -256,7 +280,7 @@ class Solution(Document):
         """The JSON object."""
         document: dict[str, Any] = {
             "format": self.FORMAT,
-            "version": 2,
+            "version": 3,
             "instance": {"name": self.instance.name, "sha256": self.instance.sha256},
             "search_space": self.search_space,
             "strands": self.strands,
@@ -272,6 +296,8 @@ class Solution(Document):
             document["instance"]["of"] = self.instance.of
         if self.bounds is not None:
             document["bounds"] = [bound.to_document() for bound in self.bounds]
+        if self.model is not None:
+            document["model"] = asdict(self.model)
         if self.coverage is not None:
             document["coverage"] = self.coverage.to_document()
         if self.notes:
@@ -298,7 +324,7 @@ class Solution(Document):
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Solution:
-        body = take_body(document, cls.FORMAT, cls.SINCE_VERSION_2)
+        body = take_body(document, cls.FORMAT, cls.ADDED)
         if document["version"] == 1 and isinstance(body.get("instance"), dict):
             body["instance"] = body["instance"] | {"of": "text"}
         found: Solution = validate(adapter_of(cls), body)

@@ -3,29 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import TYPE_CHECKING
 
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.subject import Solvable, open_subject
 from cellcolor.errors import InputError
 from cellcolor.solvers import checked
-from cellcolor.solvers.cpsat import CompleteModel
+from cellcolor.solvers.cpsat import CompleteModel, CpSolver
 from cellcolor.solvers.interface import Answer, Options
-
-if TYPE_CHECKING:
-    from ortools.sat.python import cp_model
 
 
 class Formulation(CompleteModel):
     """The complete CP-SAT model of an instance, to be extended and solved (docs/formulation.md).
 
     Constraints of your own go to ``model`` and refer to ``variables``; ``model`` minimizes
-    ``segments``. The redundant group ``undivided`` and those after it hold for some divisions with
-    the fewest segments, not for all. Leave out those that your constraints may contradict.
+    ``segments``. The redundant groups ``undivided``, ``links`` and ``zeros`` hold for some division
+    with the fewest segments, not for all. Leave out those that your constraints may contradict.
     """
 
-    def division(self, solver: cp_model.CpSolver) -> Solution:
+    def division(self, solver: CpSolver) -> Solution:
         """The division that a solver has found, after the checker has seen it.
 
         It claims no bound, because constraints of your own may exclude better divisions.

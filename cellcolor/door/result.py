@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.shares import BASES, segment_rows, shares_of
-from cellcolor.data.solution import Solution, witness_in_words
+from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
@@ -106,7 +106,7 @@ class Result:
         return cellcolor.show(self, path, **view)
 
     def __str__(self) -> str:
-        return self.solution.in_words(witness_in_words(self.instance, self.solution.witness))
+        return self.solution.in_words(self.instance)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self.instance.name!r}: {self}>"

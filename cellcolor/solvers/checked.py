@@ -162,6 +162,7 @@ def solution_of(
         bounds=bounds,
         coverage=instance.coverage,
         notes=answer.notes,
+        model=answer.model,
     )
 
 

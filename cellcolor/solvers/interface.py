@@ -84,7 +84,7 @@ class Answer:
         seams: the seams that its darts refer to.
         bounds: what was proved about the fewest segments, and how.
         notes: what was left out and why, a sentence each, such as a model too large to be built.
-        model: how large the full model of the problem is, if one was built and solved.
+        model: how large the complete model of the problem is, if one was built and solved.
     """
 
     division: Division | None

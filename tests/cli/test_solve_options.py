@@ -59,3 +59,7 @@ class TestMore:
         assert any(
             f"because cells {cell} and 2 share no color" in " ".join(out.split()) for cell in (0, 1)
         )
+
+    def test_what_proves_a_minimum_of_the_search_space(self, capsys: Capture) -> None:
+        assert run("solve", CORRIDORS, "--solver", "dfs") == 0
+        assert "proved by exhaustive search" in " ".join(capsys.readouterr().out.split())

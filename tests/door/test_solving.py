@@ -113,8 +113,8 @@ def test_a_result_says_what_is_proved_and_why() -> None:
         "because cells 0 and 1 share no color"
     )
     assert str(cellcolor.solve("parallel-corridors")) == (
-        "3 segments, 2 lift-offs, optimal in the search space paper; "
-        "any division of the surface has at least 2"
+        "3 segments, 2 lift-offs, optimal in the search space paper, "
+        "by a recursion over the graph; any division of the surface has at least 2"
     )
     whole = drawn("AA AA", {"A": [0]})
     assert str(cellcolor.solve(whole)) == (

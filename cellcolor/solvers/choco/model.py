@@ -30,40 +30,46 @@ if TYPE_CHECKING:
 
 
 class Ranks:
-    """The model; each constraint group is a method, in the order in which they are called."""
+    """The model; each constraint group is a method, in the order in which they are called.
+
+    Attributes:
+        variables: how many it has.
+        constraints: how many, a clause counted as one.
+    """
 
     def __init__(self, problem: Problem, fewest: int) -> None:
         """Write the model; ``fewest`` is a lower bound of the number of segments."""
         from pychoco.model import Model
 
         self.problem = problem
+        self.variables = self.constraints = 0
         # Lazy clause generation: what the search learns from a failure is kept as a clause.
         self.model = model = Model("coloring", lcg=True)
         cells = range(len(problem.cells))
         # Per edge and color: the edge is joined in that color, and the join is counted.
         self.joined = {
-            (edge, color): model.boolvar(name=f"joined_{edge}_{color}")
+            (edge, color): self._bool(f"joined_{edge}_{color}")
             for edge, colors in problem.colors.items()
             for color in sorted(colors)
         }
         # Per edge: its join is counted. Per dart: the parent of its sub-cell lies across it.
-        self.counted = {edge: model.boolvar(name=f"counted_{edge}") for edge in problem.colors}
-        self.up = {dart: model.boolvar(name=f"up_{dart}") for dart in problem.darts}
+        self.counted = {edge: self._bool(f"counted_{edge}") for edge in problem.colors}
+        self.up = {dart: self._bool(f"up_{dart}") for dart in problem.darts}
         # Per two darts of a cell: the second comes next after the first in one sub-cell.
-        self.link = {(i, j): model.boolvar(name=f"link_{i}_{j}") for i, j in problem.pairs()}
+        self.link = {(i, j): self._bool(f"link_{i}_{j}") for i, j in problem.pairs()}
         # Per dart: it or a dart before it in its sub-cell leads up.
-        self.met = {dart: model.boolvar(name=f"met_{dart}") for dart in problem.darts}
+        self.met = {dart: self._bool(f"met_{dart}") for dart in problem.darts}
         # Per cell: its one sub-cell is the root of a tree; no join of it is counted.
-        self.root = [model.boolvar(name=f"root_{cell}") for cell in cells]
-        self.alone = [model.boolvar(name=f"alone_{cell}") for cell in cells]
+        self.root = [self._bool(f"root_{cell}") for cell in cells]
+        self.alone = [self._bool(f"alone_{cell}") for cell in cells]
         # Per dart: the same in all of a sub-cell, greater than its parent's.
         most = len(problem.colors)
-        self.rank = {dart: model.intvar(0, most, f"rank_{dart}") for dart in problem.darts}
+        self.rank = {dart: self._int(0, most, f"rank_{dart}") for dart in problem.darts}
         self.links_of: dict[int, list[BoolVar]] = defaultdict(list)
         for (one, _other), literal in self.link.items():
             self.links_of[problem.cell_of[one]].append(literal)
         self.linked: dict[int, IntVar] = {}
-        self.segments = model.intvar(fewest, len(problem.cells), "segments")
+        self.segments = self._int(fewest, len(problem.cells), "segments")
         for group in (
             self._one_color,
             self._one_chain,
@@ -77,7 +83,7 @@ class Ranks:
             self._hubs,
         ):
             group()
-        model.sum(self.root + self.alone, "=", self.segments).post()
+        self._post(model.sum(self.root + self.alone, "=", self.segments))
         model.set_objective(self.segments, maximize=False)
 
     def solutions(self, seconds: float) -> Iterator[dict[str, Any]]:
@@ -101,16 +107,29 @@ class Ranks:
             }
         yield {"proved": solver.get_search_state() == "TERMINATED"}
 
+    def _bool(self, name: str) -> Any:
+        self.variables += 1
+        return self.model.boolvar(name=name)
+
+    def _int(self, least: int, most: int, name: str) -> Any:
+        self.variables += 1
+        return self.model.intvar(least, most, name)
+
+    def _post(self, constraint: Any) -> None:
+        self.constraints += 1
+        constraint.post()
+
     def _clause(self, some: Iterable[BoolVar], all_of: Iterable[BoolVar] = ()) -> None:
         """Some of these are true if all of those are."""
+        self.constraints += 1
         self.model.add_clauses(list(some), list(all_of))
 
     def _one_color(self) -> None:
         """An edge is joined in one color at most. If it is, one side is the other's parent."""
         for edge, colors in self.problem.colors.items():
             joined = [self.joined[edge, color] for color in sorted(colors)]
-            self.model.sum(joined, "=", self.counted[edge]).post()
-            self.model.sum([self.up[edge], self.up[-edge]], "=", self.counted[edge]).post()
+            self._post(self.model.sum(joined, "=", self.counted[edge]))
+            self._post(self.model.sum([self.up[edge], self.up[-edge]], "=", self.counted[edge]))
 
     def _one_chain(self) -> None:
         """A sub-cell is a chain: each dart has at most one neighbor after it and one before it."""
@@ -121,7 +140,7 @@ class Ranks:
             before[other].append(literal)
         for links in (after, before):
             for dart, found in links.items():
-                self.model.sum(found, "<=", self.counted[abs(dart)]).post()
+                self._post(self.model.sum(found, "<=", self.counted[abs(dart)]))
 
     def _linked(self) -> None:
         """Linked darts have one color, and one parent; of petals only the first may be a root."""
@@ -153,12 +172,12 @@ class Ranks:
                     over = [self.link[pair] for pair in ends if pair in self.link]
                     out = [self.link[pair] for pair in starts if pair in self.link]
                     if over and out:
-                        self.model.sum(over + out, "<=", 1).post()
+                        self._post(self.model.sum(over + out, "<=", 1))
 
     def _roots(self) -> None:
         """Sub-cells without a parent are roots, and a cell with a root is undivided.
 
-        docs/encodings.md explains why every segment has such a root. With it no dart of the cell
+        docs/formulation.md explains why every segment has such a root. With it no dart of the cell
         leads up, and the equation says that the root is the cell's only sub-cell.
         """
         for number, cell in enumerate(self.problem.cells):
@@ -167,7 +186,7 @@ class Ranks:
             ups = [self.up[dart] for dart in cell]
             taken = [*self.links_of.get(number, ()), *ups, root]
             signs = [1] * len(counted) + [-1] * len(taken)
-            self.model.scalar([*counted, *taken], signs, "=", 0).post()
+            self._post(self.model.scalar([*counted, *taken], signs, "=", 0))
             self._clause([alone, *counted])
             self._clause([], [alone, root])
             for literal in counted:
@@ -186,22 +205,22 @@ class Ranks:
     def _cover(self) -> None:
         """Each color region in use holds a root, and each cell touches one in use or is alone."""
         problem = self.problem
-        used = [self.model.boolvar(name=f"used_{n}") for n in range(len(problem.regions))]
+        used = [self._bool(f"used_{n}") for n in range(len(problem.regions))]
         for (edge, color), literal in self.joined.items():
             self._clause([used[problem.region_of[color, problem.cell_of[edge]]]], [literal])
         for number, colors in enumerate(problem.cell_colors):
             touched = [used[problem.region_of[color, number]] for color in sorted(colors)]
             self._clause([self.alone[number], *touched])
         signs = [1] * len(self.root) + [-1] * len(used)
-        self.model.scalar([*self.root, *used], signs, ">=", 0).post()
+        self._post(self.model.scalar([*self.root, *used], signs, ">=", 0))
 
     def _most_links(self) -> None:
         """A number for the links of each cell, which has that bound in other sums as well."""
         for cell, links in self.links_of.items():
             colors = [self.problem.colors_of(dart) for dart in self.problem.cells[cell]]
             most = best_grouping(colors).links
-            self.linked[cell] = self.model.intvar(0, most, f"links_{cell}")
-            self.model.sum(links, "=", self.linked[cell]).post()
+            self.linked[cell] = self._int(0, most, f"links_{cell}")
+            self._post(self.model.sum(links, "=", self.linked[cell]))
 
     def _homes(self) -> None:
         """A segment that reaches the home of its color region has its root there."""
@@ -231,14 +250,14 @@ class Ranks:
                 plus.append(self.alone[cell])
                 minus += [self.linked[cell]] if cell in self.linked else []
             elif darts:
-                further = self.model.intvar(0, len(darts), f"further_{cell}")
+                further = self._int(0, len(darts), f"further_{cell}")
                 counted = [self.counted[abs(dart)] for dart in darts]
                 taken = [*self.links_of.get(cell, ()), further]
                 signs = [1] * (1 + len(counted)) + [-1] * len(taken)
-                self.model.scalar([self.alone[cell], *counted, *taken], signs, "=", 1).post()
+                self._post(self.model.scalar([self.alone[cell], *counted, *taken], signs, "=", 1))
                 plus.append(further)
         for edge, literal in self.counted.items():
             if hubs.isdisjoint((problem.cell_of[edge], problem.cell_of[-edge])):
                 minus.append(literal)
         signs = [1] * len(plus) + [-1] * len(minus)
-        self.model.scalar([*plus, *minus], signs, "=", len(hubs) - len(problem.cells)).post()
+        self._post(self.model.scalar([*plus, *minus], signs, "=", len(hubs) - len(problem.cells)))

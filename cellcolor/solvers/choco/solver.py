@@ -1,8 +1,9 @@
 """Choco as a :class:`cellcolor.solvers.interface.Solver`.
 
 Run as a program, ``python -m cellcolor.solvers.choco.solver INSTANCE SECONDS``, this module solves
-an instance and prints each better solution as a line of JSON. The solver runs it in a process of
-its own: Choco hears no signal while it searches, its errors end the process, and it may print.
+an instance. It prints the size of the model, then each better solution, as lines of JSON. The
+solver runs it in a process of its own: Choco hears no signal while it searches, its errors end the
+process, and it may print.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from typing import Any
 
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
+from cellcolor.data.solution import ModelSize
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import CellcolorError, SolverMissing
 from cellcolor.processes import Child
@@ -59,6 +61,7 @@ class ChocoSolver:
         deadline = options.deadline
         best: dict[str, Any] | None = None
         proved, fewest = False, 0
+        model: ModelSize | None = None
         try:
             Problem.of(instance, deadline)  # what cannot be solved is refused here
             fewest = len(greedy_strangers(instance))
@@ -71,6 +74,8 @@ class ChocoSolver:
                     for line in child.lines(deadline):
                         told = _told(line)
                         proved = told.get("proved", proved)
+                        if "variables" in told:
+                            model = ModelSize(told["variables"], told["constraints"])
                         if "segments" in told:
                             best = told
                             if progress is not None:
@@ -81,11 +86,11 @@ class ChocoSolver:
             pass  # before the search began; or a signal that stands for the end of the time
         bounds = [Bound("strangers", fewest, "surface")]
         if best is None:
-            return Answer(None, (), tuple(bounds))
+            return Answer(None, (), tuple(bounds), model=model)
         if proved:
             bounds.append(Bound("search", best["segments"], "strands"))
         division = division_of_chains(instance, dict(best["colors"]), dict(best["after"]))
-        return Answer(division, (), tuple(bounds))
+        return Answer(division, (), tuple(bounds), model=model)
 
 
 def _told(line: str) -> dict[str, Any]:
@@ -106,6 +111,8 @@ def _main(path: str, seconds: float) -> None:
     deadline = Deadline.after(seconds)
     instance = Instance.read(path)
     built = Ranks(Problem.of(instance, deadline), len(greedy_strangers(instance)))
+    size = {"variables": built.variables, "constraints": built.constraints}
+    print(json.dumps(size), flush=True)
     for solution in built.solutions(deadline.left):
         print(json.dumps(solution), flush=True)
 

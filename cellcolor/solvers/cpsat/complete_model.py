@@ -16,14 +16,14 @@ from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.bounds.reductions import enough_crossings
 from cellcolor.solvers.cpsat.dart_graph import complete_graph
 from cellcolor.solvers.cpsat.drawing import seamed
-from cellcolor.solvers.cpsat.formulation import Formulation
+from cellcolor.solvers.cpsat.formulation import SectorModel
 from cellcolor.solvers.cpsat.painting import Block, canonical, division_of
 from cellcolor.solvers.cpsat.parts import loops_of, seam_places
 from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 
 
-class CompleteModel(Formulation):
+class CompleteModel(SectorModel):
     """The formulation of a whole instance.
 
     Args:

@@ -16,10 +16,10 @@ from cellcolor.solvers.bounds.grouping import best_grouping
 from cellcolor.union_find import UnionFind
 
 if TYPE_CHECKING:
-    from cellcolor.solvers.cpsat.formulation import Formulation
+    from cellcolor.solvers.cpsat.formulation import SectorModel
 
 
-def add_variables(m: Formulation, *, only_centers: bool) -> None:
+def add_variables(m: SectorModel, *, only_centers: bool) -> None:
     """The variables.
 
     Args:
@@ -46,13 +46,13 @@ def add_variables(m: Formulation, *, only_centers: bool) -> None:
             v.parent[here, there] = model.new_bool_var(f"parent[{here},{there}]")
 
 
-def one_color(m: Formulation) -> None:
+def one_color(m: SectorModel) -> None:
     """(1) Each sector has one color."""
     for sector in range(len(m.sectors.cell)):
         m.model.add_exactly_one(m.variables.color[sector, c] for c in m.colors(sector))
 
 
-def parent_or_root(m: Formulation) -> None:
+def parent_or_root(m: SectorModel) -> None:
     """(2) Each sector has a parent, or it is the root of its segment in its color."""
     v = m.variables
     for sector, own in enumerate(m.neighbors):
@@ -62,7 +62,7 @@ def parent_or_root(m: Formulation) -> None:
         m.model.add_implication(literal, v.color[sector, c])
 
 
-def parent_of_one_color(m: Formulation) -> None:
+def parent_of_one_color(m: SectorModel) -> None:
     """(3) A sector has the color of its parent, and that color is joinable between the two."""
     v = m.variables
     for (here, there), literal in v.parent.items():
@@ -72,14 +72,14 @@ def parent_of_one_color(m: Formulation) -> None:
             m.model.add_bool_or([~literal, ~v.color[here, c], *same])
 
 
-def no_circles(m: Formulation) -> None:
+def no_circles(m: SectorModel) -> None:
     """(4) Ranks fall from each sector to its parent, so that parents lead to a root."""
     v = m.variables
     for (here, there), literal in v.parent.items():
         m.model.add(v.rank[here] >= v.rank[there] + 1).only_enforce_if(literal)
 
 
-def one_host(m: Formulation) -> None:
+def one_host(m: SectorModel) -> None:
     """(5) A leaf dart is attached to one sector of its cell at most, in one color with it."""
     v = m.variables
     for leaf, hosts in m.sectors.hosts.items():
@@ -92,7 +92,7 @@ def one_host(m: Formulation) -> None:
                 m.model.add_bool_or([~attached, ~v.color[leaf, c], v.color[host, c]])
 
 
-def undivided(m: Formulation) -> None:
+def undivided(m: SectorModel) -> None:
     """(6) A root is the center of an undivided cell.
 
     That no other sector can be one is said by ``add_variables``.
@@ -103,14 +103,14 @@ def undivided(m: Formulation) -> None:
             m.model.add_implication(literal, v.color[node, c])
 
 
-def fixed_roots(m: Formulation) -> None:
+def fixed_roots(m: SectorModel) -> None:
     """(7) A region with one-colored cells has a root in one of them, whichever is chosen."""
     for number, cell in m.fixed_root.items():
         root = m.variables.root[m.sectors.center(cell), m.regions[number][0]]
         m.model.add_bool_or([root])
 
 
-def regions_in_use(m: Formulation) -> None:
+def regions_in_use(m: SectorModel) -> None:
     """(8) A region in use has a root, and each cell lies in a region in use."""
     model, v = m.model, m.variables
     for (sector, c), literal in v.color.items():
@@ -124,14 +124,14 @@ def regions_in_use(m: Formulation) -> None:
         model.add_bool_or(m.used[m.region_of[cell, c]] for c in sorted(colors))
 
 
-def cover(m: Formulation) -> None:
+def cover(m: SectorModel) -> None:
     """(9) There are as many regions in use as a smallest set cover has, and as many segments."""
     m.fewest_regions = smallest_cover(m.regions, len(m.sectors.nodes))
     m.model.add(sum(m.used) >= m.fewest_regions)
     m.model.add(sum(m.variables.root.values()) >= m.fewest_regions)
 
 
-def company(m: Formulation) -> None:
+def company(m: SectorModel) -> None:
     """(10) Each sector is a root, or has a neighbor of its color."""
     v = m.variables
     for (sector, c), literal in v.color.items():
@@ -140,7 +140,7 @@ def company(m: Formulation) -> None:
         m.model.add_bool_or([~literal, *near, *own])
 
 
-def euler(m: Formulation) -> None:
+def euler(m: SectorModel) -> None:
     """(11) Euler's formula: there are as many segments as borders divide the surface into.
 
     Where b border lines meet at a face of the sector graph, they add (b - 2) / 2 regions.
@@ -161,7 +161,7 @@ def euler(m: Formulation) -> None:
     )
 
 
-def links(m: Formulation) -> None:
+def links(m: SectorModel) -> None:
     """(12) No cell has more links than its best grouping of darts.
 
     A cell with s sub-cells has as many links as joined darts less s, and by Euler's formula in the
@@ -191,7 +191,7 @@ def links(m: Formulation) -> None:
         m.model.add(sum(own.get(cell, [])) + 2 + sum(changes) >= 2 * (sum(joined) - most))
 
 
-def zeros(m: Formulation) -> None:
+def zeros(m: SectorModel) -> None:
     """(13) The color changes along a cell's border only at a joined dart.
 
     A dart in state 0 shows the color of the sub-cell before it.
@@ -207,7 +207,7 @@ def zeros(m: Formulation) -> None:
                 m.model.add_bool_or([~change, ~v.color[sectors.at[dart], c]])
 
 
-DEFINING: Mapping[str, Callable[[Formulation], None]] = {
+DEFINING: Mapping[str, Callable[[SectorModel], None]] = {
     "one color": one_color,
     "parent or root": parent_or_root,
     "parent of one color": parent_of_one_color,
@@ -215,7 +215,7 @@ DEFINING: Mapping[str, Callable[[Formulation], None]] = {
     "one host": one_host,
 }
 
-REDUNDANT: Mapping[str, Callable[[Formulation], None]] = {
+REDUNDANT: Mapping[str, Callable[[SectorModel], None]] = {
     "undivided": undivided,
     "fixed roots": fixed_roots,
     "regions in use": regions_in_use,

@@ -47,7 +47,7 @@ class Variables:
     attached: dict[Pair, cp_model.IntVar] = field(default_factory=dict)
 
 
-class Formulation:
+class SectorModel:
     """The model on the sector graph of some cells.
 
     Args:

@@ -100,7 +100,10 @@ class OptimalSchemes(Iterator[Division]):
         start = self._start()
         if start is None:
             return
-        rng, known, seen = Random(self._options.seed), [start], set()
+        first = division_of(self._graph, start)
+        rng, known, seen = Random(self._options.seed), [start], {scheme_key(first)}
+        if self._instance.most_live_loops < 2:
+            yield first
         around = _around(self._graph)
         size, in_vain = 2, 0
         while in_vain < _IN_VAIN:

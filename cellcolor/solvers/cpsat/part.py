@@ -21,7 +21,7 @@ from cellcolor.solvers.bounds.reductions import enough_crossings
 from cellcolor.solvers.cpsat.dart_graph import DartGraph, complete_graph, dart_graph, widened
 from cellcolor.solvers.cpsat.drawing import moved, seamed
 from cellcolor.solvers.cpsat.exact_shapes import exact_minimum
-from cellcolor.solvers.cpsat.formulation import Formulation
+from cellcolor.solvers.cpsat.formulation import SectorModel
 from cellcolor.solvers.cpsat.local_search import recolor
 from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, segments_of
 from cellcolor.solvers.cpsat.parts import ConnectedPart
@@ -182,7 +182,7 @@ class Part:
         part = self._part
         try:
             graph = complete_graph(self.instance, strands, part.loops, part.seams)
-            built = Formulation(graph, self.regions, deadline=deadline)
+            built = SectorModel(graph, self.regions, deadline=deadline)
         except TooLarge as error:
             self.notes.append(str(error))
             return

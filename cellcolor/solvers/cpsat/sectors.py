@@ -174,9 +174,7 @@ def _rings_of(
     return rings if most_rings is None else min(rings, most_rings)
 
 
-def _add_sectors(
-    made: SectorGraph, cell: int, loops: Sequence[Sequence[int]], rings: int
-) -> None:
+def _add_sectors(made: SectorGraph, cell: int, loops: Sequence[Sequence[int]], rings: int) -> None:
     darts = loops[0] if loops else ()
     leaves = [loop[0] for loop in loops[1:]]
     first, count = len(made.cell), len(darts)

@@ -18,7 +18,7 @@ from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import ModelSize, Seam, count_segments
-from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.deadline import OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import greedy_strangers
 from cellcolor.solvers.cpsat.certificates import conflict_certificate
