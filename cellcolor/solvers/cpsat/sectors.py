@@ -167,7 +167,8 @@ def sector_graph(
 def _rings_of(
     made: SectorGraph, cell: int, loops: Sequence[Sequence[int]], most_rings: int | None
 ) -> int:
-    if len(made.graph.colors[cell]) < 2 or not loops:
+    joinable = frozenset[int]().union(*(made.graph.darts[d].colors for loop in loops for d in loop))
+    if len(joinable) < 2:  # sub-cells that have darts in state 1 would be of one color
         return 0
     rings = _enough_rings([made.graph.darts[dart].colors for dart in loops[0]], len(loops) > 1)
     return rings if most_rings is None else min(rings, most_rings)
