@@ -33,6 +33,7 @@ _OWN = {
     "cp-sat-ranks": "cellcolor.solvers.encodings.ranks:RanksSolver",
     "cp-sat-contour": "cellcolor.solvers.encodings.contour:ContourSolver",
     "dfs": "cellcolor.solvers.dfs:ReferenceSolver",
+    "dfs-cover": "cellcolor.solvers.dfs:CoverReferenceSolver",
     "clingo": "cellcolor.solvers.clingo:ClingoSolver",
     "choco": "cellcolor.solvers.encodings.choco:ChocoSolver",
     "highs": "cellcolor.solvers.linear.rivals:HighsSolver",

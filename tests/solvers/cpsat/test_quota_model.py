@@ -84,7 +84,7 @@ def test_with_two_corridors_they_come_to_the_minimum_of_the_depth_first_search(
 ) -> None:
     instance = planar_graph(seed, cells, cells + 3, 3)
     wide = Options(workers=1, search_space="surface", strands=2)
-    assert decided(searches(instance, wide)) == solve(instance, wide, "dfs").segments
+    assert decided(searches(instance, wide)) == solve(instance, wide, "dfs-cover").segments
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.solvers.dfs import ReferenceSolver
 from cellcolor.solvers.dfs.cell_schemes import CellScheme, cell_schemes
 from cellcolor.solvers.dfs.graph import GraphCell
-from cellcolor.solvers.dfs.search import zeros_fit
+from cellcolor.solvers.dfs.zeros import zeros_fit
 from cellcolor.solvers.interface import Options
 
 SOLVER = ReferenceSolver()
@@ -29,7 +29,7 @@ def divisions(size: int) -> set[frozenset[frozenset[int]]]:
     """
     colors = tuple(range(max(1, size // 2)))
     darts = tuple(range(1, size + 1))
-    cell = GraphCell(0, colors, darts, (frozenset(colors),) * size, (-1,) * size, (0,) * size)
+    cell = GraphCell(0, colors, darts, (frozenset(colors),) * size)
     return {
         frozenset(frozenset(darts) for _, darts in scheme.subcells)
         for scheme in cell_schemes(cell, (None,) * size)
@@ -80,9 +80,7 @@ def test_codes_of_a_four_edge_cell() -> None:
 def test_schemes_of_a_lone_cell_in_two_colors(edges: int) -> None:
     """With colors: rules 2 to 4, round the cyclic list's end too (red, blue and red again)."""
     cell = Cell(0, (0, 1), (tuple(range(1, edges + 1)),))
-    alone = GraphCell(
-        0, (0, 1), cell.loops[0], (frozenset((0, 1)),) * edges, (-1,) * edges, (0,) * edges
-    )
+    alone = GraphCell(0, (0, 1), cell.loops[0], (frozenset((0, 1)),) * edges)
     found = [frozenset(scheme.subcells) for scheme in cell_schemes(alone, (None,) * edges)]
     expected = {
         frozenset(local.blocks)
@@ -101,8 +99,7 @@ def test_zeros_that_show_one_color_on_both_sides_do_not_fit() -> None:
         ({1}, (red, red), True),
     ):
         cells = [
-            GraphCell(i, (0, 1), (dart,), (frozenset(joinable),), (-1,), (0,))
-            for i, dart in enumerate((1, -1))
+            GraphCell(i, (0, 1), (dart,), (frozenset(joinable),)) for i, dart in enumerate((1, -1))
         ]
         assert zeros_fit(cells, painted) == fits
 
