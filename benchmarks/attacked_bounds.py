@@ -125,7 +125,7 @@ def drawn(seed: int, number: int) -> Case:
 def brute_force(case: Case) -> tuple[int, int, bool]:
     """The minimum in the search space ``paper``, the fewest segments known for the surface, and
     whether the mesh's vertices were colored."""
-    solution = solve(case.instance, Options(), "dfs")
+    solution = solve(case.instance, Options(), "dfs-cover")
     fewest = solution.segments
     assert solution.status == "optimal"
     assert fewest is not None

@@ -24,7 +24,7 @@ from cellcolor.cli.progress import progress_bar
 from cellcolor.cli.terminal import complain, say, say_lines
 from cellcolor.errors import InputError, system_errors
 from cellcolor.files.writing import PNG, SVG, Output, write
-from cellcolor.solvers.registry import DEFAULT, REFERENCE
+from cellcolor.solvers.registry import DEFAULT, PAPERS, REFERENCE
 
 if TYPE_CHECKING:
     from cellcolor.lab.runs.row import Row
@@ -61,7 +61,7 @@ def bench() -> None:
     "solvers",
     metavar="NAME[@WORKERS]",
     multiple=True,
-    default=(REFERENCE, DEFAULT),
+    default=(PAPERS, REFERENCE, DEFAULT),
     show_default=True,
     help="Solver; repeat the option for several.",
 )

@@ -122,7 +122,7 @@ def test_a_wrong_minimum_is_noticed_and_made_small(
     number = next(n for n in range(9) if has_busy_cell(draw_case(0, n).instance))
     assert main(["bench", "campaign", "--count", str(number + 1), "-o", str(kept)]) == 1
     file = kept / f"campaign_0_{number}.json"
-    assert f"{file}: dfs has" in capsys.readouterr().err
+    assert f"{file}: dfs-cover has" in capsys.readouterr().err
     small = Instance.read(file)
     assert small.meta is not None and small.meta["campaign"]["number"] == number
     # Three live darts in one cell, each joinable in one color, are all that it takes.
@@ -143,11 +143,11 @@ def test_a_lost_scheme_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     figure = Instance.read(PAPER / "split-cell.json")  # its only optimum has a cutting path
     assert compare_solvers(figure, 10.0).always_cut
     monkeypatch.setattr(ReferenceSolver, "optimal_schemes", without_the_first)
-    with pytest.raises(RefusedResult, match="dfs found no scheme with 2 segments"):
+    with pytest.raises(RefusedResult, match="dfs-cover found no scheme with 2 segments"):
         compare_solvers(figure, 10.0)
     figure = Instance.read(PAPER / "crossing-zeros.json")  # three optimal schemes
     with pytest.raises(
-        Disagreement, match="cp-sat lists 1 optimal schemes that dfs does not, dfs 0"
+        Disagreement, match="cp-sat lists 1 optimal schemes that dfs-cover does not, dfs-cover 0"
     ):
         compare_solvers(figure, 10.0)
 
@@ -161,7 +161,7 @@ def test_a_scheme_listed_twice_is_noticed(monkeypatch: pytest.MonkeyPatch) -> No
             yield division
 
     monkeypatch.setattr(ReferenceSolver, "optimal_schemes", twice)
-    with pytest.raises(Disagreement, match="dfs lists a scheme twice"):
+    with pytest.raises(Disagreement, match="dfs-cover lists a scheme twice"):
         compare_solvers(RING, 10.0)
 
 

@@ -37,7 +37,9 @@ from cellcolor.solvers.cpsat.routes.segment_plans import Planner
 from cellcolor.solvers.interface import Options, Start
 from examples import examples
 
-ABLE = ("cp-sat", "dfs", "cp-sat-model")
+BOUNDING = ("cp-sat", "dfs-cover", "cp-sat-model")
+"""Those that know a bound of the cost for any division."""
+ABLE = (*BOUNDING, "dfs")
 SEEDS = st.integers(0, 10**6)
 COSTS = st.lists(st.integers(1, 9), min_size=4, max_size=4)
 
@@ -57,7 +59,7 @@ def weighed(instance: Instance, costs: list[int]) -> tuple[Options, tuple[int, .
     return Options(objective=objective, workers=1), objective.by_color(instance.colors)
 
 
-@pytest.mark.parametrize("name", ABLE)
+@pytest.mark.parametrize("name", BOUNDING)
 @pytest.mark.parametrize(
     ("costs", "segments", "cost"),
     [
