@@ -46,9 +46,9 @@ def test_literal_cost_counts_pairs_not_edges() -> None:
 def test_literal_cost_prefers_a_circle_to_a_division_with_fewer_segments() -> None:
     """r is red, R red or green, b blue, a and c are red or blue (c also green).
 
-    Blue a and c connect the two b: one red and one blue segment. Red ones connect nothing that r
-    and R do not connect by themselves, so that there are 3 segments. But the five cells r, R, a and
-    c are joined in six pairs then.
+    Blue a and c connect the two b: one red and one blue segment. Red ones connect nothing that is
+    not connected without them, so there are 3 segments. But r, R, a and c are joined in six pairs
+    then: 4 - 6, and 2 for the two b.
     """
     labels = {"r": [0], "R": [0, 2], "b": [1], "a": [0, 1], "c": [0, 1, 2]}
     instance = decompose(drawn("rbR raR rcR rbR rrR", labels))
