@@ -7,14 +7,17 @@ from dataclasses import dataclass, field
 from typing import Annotated
 
 from annotated_types import Ge, Le
-from pydantic import NonNegativeFloat
 
+from cellcolor.data.prices import MOST_PRICE
 from cellcolor.data.value import Value
 from cellcolor.errors import InputError
+from cellcolor.files.validation import settle
 
-Cost = Annotated[int, Ge(1), Le(1_000_000)]
+Cost = Annotated[int, Ge(1), Le(MOST_PRICE)]
 """What a segment costs. It is a whole number, so that a bound can meet it exactly, and at least 1,
 so that a lower bound of the number of segments is one of their cost as well."""
+_BINARY = 1e-6
+"""How far 1000 times a price with three decimals may be from a whole number, in floating point."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,14 +27,26 @@ class Objective(Value):
     Attributes:
         segments: what a segment costs, by the name of its color; 1 for a color that is not named.
         uncovered_price: what it costs to leave everything uncovered that can be covered, in
-            segments; a share of it costs that share. None if everything has to be covered.
-        change_over: what a change from one set-up to the next costs, in lift-offs, 1 or more, since
-            it takes a lift-off. None for the fewest set-ups first, whatever that costs.
+            segments, from 0 to 1,000,000; a share of it costs that share. None if everything
+            has to be covered.
+        change_over: what a change from one set-up to the next costs, in lift-offs, from 1, since it
+            takes a lift-off, to 1,000,000, in thousandths. None for the fewest set-ups first,
+            whatever that costs.
+
+    Raises:
+        InputError: a price is out of its range, or finer.
     """
 
     segments: dict[str, Cost] = field(default_factory=dict, hash=False)
-    uncovered_price: NonNegativeFloat | None = None
-    change_over: Annotated[float, Ge(1)] | None = None
+    uncovered_price: Annotated[float, Ge(0), Le(MOST_PRICE)] | None = None
+    change_over: Annotated[float, Ge(1), Le(MOST_PRICE)] | None = None
+
+    def __post_init__(self) -> None:
+        settle(self)
+        thousandths = 1000 * (self.change_over or 0)
+        if abs(thousandths - round(thousandths)) > _BINARY:
+            message = f"must have no more than three decimals, is {self.change_over}"
+            raise InputError(None, "change_over", message)
 
     @property
     def is_default(self) -> bool:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, ulp
 from typing import Any
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.objective import Objective
+from cellcolor.data.prices import MOST_CM2
 from cellcolor.data.solution import Solution
 from cellcolor.data.wording import count, lift_offs_of
 from cellcolor.errors import InputError
@@ -165,7 +166,8 @@ class Front:
             InputError: it asks for something else as well, or nothing is known.
         """
         objective.allow("uncovered_price")
-        return self._cheapest(lambda lift_offs, share: objective.total(lift_offs, 1 - share))
+        worth = objective.uncovered_price or 0.0
+        return self._cheapest(lambda lift_offs, share: objective.total(lift_offs, 1 - share), worth)
 
     def fewest_for(self, share: float) -> FrontChoice:
         """The fewest lift-offs that cover a share, and whether it is proved that no fewer do.
@@ -176,19 +178,22 @@ class Front:
         return self._choice(
             self.at_least(share),
             lambda lift_offs, covered: lift_offs if covered >= share - _ROUNDING else inf,
+            0.0,
         )
 
     def least_cost(self, lift_off_cm2: float) -> FrontChoice:
         """The least sum of lift-offs and area, and whether it is proved that none is less.
 
         Args:
-            lift_off_cm2: a lift-off costs as much as so many square centimeters left out.
+            lift_off_cm2: a lift-off costs as much as so many square centimeters left out, from 0
+                to ``MOST_CM2``.
 
         Raises:
-            InputError: the price is negative or no number, or the graph has no areas.
+            InputError: the price is out of its range, or the graph has no areas.
         """
-        if not 0 <= lift_off_cm2 < inf:
-            raise InputError(None, "price", f"must be a number from 0 on, is {lift_off_cm2:g}")
+        if not 0 <= lift_off_cm2 <= MOST_CM2:
+            message = f"must be a number from 0 to {MOST_CM2}, is {lift_off_cm2:g}"
+            raise InputError(None, "price", message)
         if any(cell.area is None for cell in self.instance.cells):
             raise InputError(None, "price", "is one of area, and the cells of this graph have none")
         whole = _CM2 * self.weight
@@ -196,17 +201,23 @@ class Front:
         def cost(lift_offs: int, covered: float) -> float:
             return lift_off_cm2 * lift_offs + whole * (1 - covered)
 
-        found = self._cheapest(cost)
+        found = self._cheapest(cost, whole)
         return replace(found, cost_cm2=cost(found.point.lift_offs, found.point.covered_share))
 
-    def _cheapest(self, cost: Callable[[int, float], float]) -> FrontChoice:
-        """The point that costs least, of its lift-offs and the share that it covers."""
+    def _cheapest(self, cost: Callable[[int, float], float], worth: float) -> FrontChoice:
+        """The point that costs least, of its lift-offs and the share that it covers.
+
+        Args:
+            worth: what it costs to leave out everything.
+        """
         if not self.points:
             raise InputError(None, None, "no division is known")
         point = min(self.points, key=lambda one: cost(one.lift_offs, one.covered_share))
-        return self._choice(point, cost)
+        return self._choice(point, cost, worth)
 
-    def _choice(self, point: FrontPoint, cost: Callable[[int, float], float]) -> FrontChoice:
+    def _choice(
+        self, point: FrontPoint, cost: Callable[[int, float], float], worth: float
+    ) -> FrontChoice:
         """A point, and whether no division costs less: of so many lift-offs that cover a share."""
         own = cost(point.lift_offs, point.covered_share)
 
@@ -217,7 +228,7 @@ class Front:
                 for lift_offs, share in enumerate([*known, 1.0])
                 if share >= 0  # otherwise so few do not cover what is required
             )
-            return own <= least + _ROUNDING * max(1.0, abs(own))
+            return own <= least + _ROUNDING * worth + 4 * ulp(own)
 
         return FrontChoice(point, proved(on_surface=False), proved(on_surface=True))
 

@@ -336,12 +336,29 @@ def test_what_does_not_go_together_is_refused() -> None:
     for other in (Objective(uncovered_price=2.0), Objective(change_over=1.0)):
         with pytest.raises(InputError, match="cannot be minimized here, only segments"):
             solve(TWO, Options(objective=other))
-    for prices in ({"uncovered_price": -1.0}, {"change_over": 0.5}, {"change_over": float("inf")}):
-        with pytest.raises(InputError, match=next(iter(prices))):
-            Objective(**prices)
     for cost in (0, -1, 1.5, True, 10**7):
         with pytest.raises(InputError, match="segments"):
             Objective({"red": cost})  # type: ignore[dict-item]
+
+
+@pytest.mark.parametrize(("name", "least"), [("uncovered_price", 0), ("change_over", 1)])
+def test_prices_that_floating_point_could_not_add_are_refused(name: str, least: int) -> None:
+    """1e17 + 1 is 1e17, and 1000 * 1e306 no number; up to a million sums are right."""
+    for price in (1_000_000.5, 1e17, 1e306):
+        with pytest.raises(InputError, match=f"{name}: .* less than or equal to 1000000"):
+            Objective(**{name: price})
+    with pytest.raises(InputError, match=f"{name}: .* greater than or equal to {least}"):
+        Objective(**{name: least - 0.5})
+    for price in (float("inf"), float("nan")):
+        with pytest.raises(InputError, match=name):
+            Objective(**{name: price})
+    for price in (least, 1.001, 2.5, 1_000_000):
+        assert getattr(Objective(**{name: price}), name) == price
+
+
+def test_a_change_over_is_told_in_thousandths() -> None:
+    with pytest.raises(InputError, match="change_over: must have no more than three decimals"):
+        Objective(change_over=1.0004)
 
 
 def test_a_start_is_kept_where_it_is_cheaper() -> None:
