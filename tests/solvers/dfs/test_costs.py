@@ -6,6 +6,7 @@ import random
 from itertools import islice
 
 import networkx
+import pytest
 from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
@@ -68,6 +69,13 @@ def test_literal_cost_prefers_a_circle_to_a_division_with_fewer_segments() -> No
     assert min(cost for _, cost in costs) == minimum(instance) == 2
     assert min(costs) == (0, 3)
     assert {literal for literal, cost in costs if cost == 2} == {2}
+
+
+@pytest.mark.parametrize("seed", [1, 149, 150, 156, 250])
+def test_the_cost_so_far_may_fall(seed: int) -> None:
+    """A branch that costs as much as the best one so far may still come to the minimum."""
+    instance = planar_graph(seed, 5, 8, 3)
+    assert segments(instance, SOLVER.minimize(instance, Options())) == minimum(instance) == 1
 
 
 @given(st.integers(0, 10**4), st.booleans(), st.randoms(use_true_random=False))
