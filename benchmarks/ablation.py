@@ -19,8 +19,8 @@ from cellcolor.lab.families import hub_grid
 from cellcolor.processes import Limits, run_alone
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
+from cellcolor.solvers.cpsat.dart_graph import dart_graph, seams_of
 from cellcolor.solvers.cpsat.model.constraints import DEFINING, REDUNDANT, Group
-from cellcolor.solvers.cpsat.model.dart_graph import dart_graph, seams_of
 from cellcolor.solvers.cpsat.model.full import full_model
 
 SHIPPED = Path(__file__).resolve().parents[1] / "instances"

@@ -49,9 +49,9 @@ LENGTHS_M = {
     "square": 0.0045,
     "wok": 0.0035,
     "wok_obstacle": 0.003,
-    "hemisphere_flat": 0.0032,
-    "half_pipe": 0.0013,
-    "hemisphere_tilted": 0.001,
+    "hemisphere_flat": 0.00115,
+    "half_pipe": 0.0012,
+    "hemisphere_tilted": 0.00105,
 }
 
 

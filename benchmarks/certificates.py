@@ -155,7 +155,7 @@ class Tally:
         trusted = ", ".join(f"{number} {kind}" for kind, number in sorted(self.trusted.items()))
         cells = (
             *(name, self.instances, self.optimal, share),
-            *(simple, self.verified["conflicts"], self.verified["hubs"], trusted or 0),
+            *(simple, self.verified["conflicts"], trusted or 0),
             *(max(self.tried, default=0), f"{median(self.seconds or [0]):.3f}"),
             f"{max(self.seconds, default=0):.2f}",
         )
@@ -163,9 +163,9 @@ class Tally:
 
 
 HEAD = """\
-| group | instances | proved optimal | of these verified | by cover | by conflicts | by hubs \
-| by CP-SAT | most choices | median s | worst s |
-|---|--:|--:|--:|--:|--:|--:|---|--:|--:|--:|"""
+| group | instances | proved optimal | of these verified | by cover | by conflicts | by CP-SAT \
+| most choices | median s | worst s |
+|---|--:|--:|--:|--:|--:|---|--:|--:|--:|"""
 
 
 def verdict_on(instance: Instance, solution: Solution) -> tuple[BoundVerdict, float]:

@@ -1,11 +1,15 @@
 """The six scenes at a resolution, raw and with the sliver policy, as shipped or displaced.
 
     python benchmarks/experiments.py VERTICES [SEEDS] [--raw-only | --policy-only] [SCENE ...]
+    python benchmarks/experiments.py VERTICES --constraints [SCENE ...]
     python benchmarks/experiments.py VERTICES SEEDS --write FOLDER
 
 Without SEEDS: one line a scene and policy. With SEEDS: the object moved by up to 5 mm and
 2 degrees an axis, once for each seed from 1 on, and how often each number of lift-offs came out.
 "a-b" stands for a minimum that the time limit of 10 seconds left between a and b.
+
+With --constraints: how many candidates (a vertex in a branch that has a solution there) fail each
+test of validity, and in brackets how many fail no other.
 
 With --write, labelled surfaces of other scenes are written instead, for ``cellcolor bench run``:
 no sliver policy, the object moved by up to 40 mm and 12 degrees an axis, far beyond what a fixture
@@ -18,6 +22,7 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +30,7 @@ import numpy as np
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.frontend import BuildResult, build_surface
+from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
@@ -68,6 +74,26 @@ def shares(result: BuildResult) -> tuple[float, float]:
     return 100 * report.reachable_area_m2 / report.area_m2, 100 * lost / report.area_m2
 
 
+def print_constraints(names: Sequence[str], vertices: int) -> None:
+    """A table: a row for each test, a column for each scene."""
+    columns = []
+    for name in names:
+        scene = Scene.read(SCENES / f"{name}.toml").varied(object={"target_vertices": vertices})
+        prepared = prepare(scene)
+        surface = prepared.surface
+        solutions = prepared.arm.inverse(surface.vertices, -surface.normals).reshape(-1, 6)
+        solved = solutions[~np.isnan(solutions[:, 0])]
+        failures = prepared.judge.all_failures(solved)
+        tests_failed = np.sum(list(failures.values()), axis=0)
+        column = {"candidates": f"{len(solved)}", "valid": f"{(tests_failed == 0).sum()}"}
+        for test, failed in failures.items():
+            column[test] = f"{failed.sum()} ({(failed & (tests_failed == 1)).sum()})"
+        columns.append(column)
+    print(f"| | {' | '.join(names)} |\n|---|{'--:|' * len(names)}")
+    for row in columns[0]:
+        print(f"| {row} | {' | '.join(column[row] for column in columns)} |")
+
+
 def write(folder: Path, vertices: int, seeds: int) -> None:
     """Write a labelled surface for each scene and seed."""
     for name in NAMES:
@@ -87,6 +113,9 @@ def main(arguments: list[str]) -> None:
     options = {argument for argument in arguments if argument.startswith("--")}
     numbers = [int(argument) for argument in arguments if argument.isdigit()]
     names = [argument for argument in arguments if argument in NAMES] or NAMES
+    if "--constraints" in options:
+        print_constraints(names, numbers[0])
+        return
     left_out = {"--policy-only": True, "--raw-only": False}
     policies = [raw for raw in (True, False) if raw not in {left_out[key] for key in options}]
     for name in names:

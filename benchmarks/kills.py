@@ -35,21 +35,6 @@ from cellcolor.cli import main as main_of_cellcolor
 ROOT = Path(__file__).resolve().parents[1]
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
 
-WRONG = """
-import sys, time
-import cellcolor.cli.campaign as module
-from cellcolor.lab.campaign.pool import Outcome, Wrong
-text = open(sys.argv.pop(1), encoding="utf-8").read()
-def disagreeing(count, *_):
-    for number in range(count):
-        time.sleep(0.02)
-        yield Outcome(number, "hubs", 5, 4, None, None, (Wrong("!", text),), 0.0)
-module.outcomes_of_campaign = disagreeing
-from cellcolor.cli import main
-sys.exit(main())
-"""
-"""A campaign in which everything is wrong, since a real one finds nothing to write."""
-
 SLOW = """
 import sys, time
 from pathlib import Path
@@ -71,13 +56,11 @@ class Command:
     Attributes:
         arguments: of ``cellcolor``, in a folder with the files that :func:`prepare` makes.
         outputs: the files that it writes, and which belong together.
-        done: the exit codes of its own that are right.
         script: what to run instead of ``cellcolor``, and its first arguments.
     """
 
     arguments: tuple[str, ...]
     outputs: tuple[str, ...]
-    done: tuple[int, ...] = (0,)
     script: tuple[str, ...] = ("-m", "cellcolor")
 
 
@@ -90,13 +73,6 @@ COMMANDS = {
     "solve -o": Command(("solve", "hub.json", "-o", "s.json"), ("s.json",)),
     "solve --all -o": Command(("solve", "many.json", "--all", "-o", "s.jsonl"), ("s.jsonl",)),
     "show": Command(("show", "r.json", "-o", "p.html"), ("p.html",)),
-    "campaign -o": Command(("bench", "campaign", "--count", "6", "-o", "kept"), ()),
-    "campaign -o, all wrong": Command(
-        ("bench", "campaign", "--count", "30", "--jobs", "1", "-o", "kept"),
-        tuple(f"kept/campaign_0_{number}.json" for number in range(30)),
-        (1,),
-        ("-c", WRONG, "r.json"),
-    ),
     "check": Command(("check", "r.surface.json", "plan.json"), ()),
 }
 
@@ -134,11 +110,6 @@ def prepare(folder: Path, command: Command) -> None:
         cellcolor(folder, "solve", "r.json", *command.arguments[2:])
     if command.arguments[0] == "show":
         cellcolor(folder, "show", "r.surface.json", "--color", "0", *command.arguments[2:])
-    if command.arguments[0] == "bench":
-        (folder / "kept").mkdir()
-        for number, output in enumerate(command.outputs):
-            if number % 2:
-                shutil.copy(folder / "hub.json", folder / output)
 
 
 def start(folder: Path, command: Command) -> subprocess.Popen[bytes]:
@@ -202,7 +173,7 @@ def kill_once(
         changed = {output for output in command.outputs if new.get(output) != old.get(output)}
         counted = []
         if number != signal.SIGKILL:
-            counted.append(ending(command, code, lines, changed, fault))
+            counted.append(ending(code, lines, changed, fault))
             if strays(folder):
                 fault(f"strays {strays(folder)}")
         elif strays(folder):
@@ -212,12 +183,12 @@ def kill_once(
                 fault(f"{output} is not whole")
         if command.arguments[0] == "build" and changed:
             counted.append(together(folder, command, changed, number, fault))
-        elif command.outputs and command.arguments[0] != "bench":
+        elif command.outputs:
             counted.append("new" if changed else "old")
         if number == signal.SIGKILL:
             process = start(folder, command)
             process.communicate(timeout=300)
-            if process.returncode not in command.done:
+            if process.returncode != 0:
                 fault(f"exit code {process.returncode} of the run after a kill")
             if strays(folder):
                 fault(f"strays {strays(folder)} after the run that followed a kill")
@@ -227,9 +198,9 @@ def kill_once(
         return counted
 
 
-def ending(command: Command, code: int, lines: list[str], changed: set[str], fault: Say) -> str:
+def ending(code: int, lines: list[str], changed: set[str], fault: Say) -> str:
     """What SIGINT or SIGTERM made of a command."""
-    if code in command.done and code != 3:
+    if code == 0:
         return "came to its end"
     if code in (-signal.SIGINT, -signal.SIGTERM):
         if changed:
@@ -237,9 +208,8 @@ def ending(command: Command, code: int, lines: list[str], changed: set[str], fau
         return "not yet begun"  # Python itself was starting
     if code != 3:
         fault(f"exit code {code}: {lines[-1:]}")
-    said = [line for line in lines if "kept/campaign_0_" not in line]  # of each file comes before
-    if len(said) > 1 or (said and "interrupted" not in said[0]):
-        fault(f"exit code {code} with {said}")
+    if len(lines) > 1 or (lines and "interrupted" not in lines[0]):
+        fault(f"exit code {code} with {lines}")
     return "exit code 3"
 
 
@@ -279,7 +249,7 @@ def trial(
         process = start(alone, command)
         process.communicate()
         seconds = time.monotonic() - begun
-        if process.returncode not in command.done:
+        if process.returncode != 0:
             fault(f"exit code {process.returncode} when left alone")
         for run in range(count):
             number = SIGNALS[run % len(SIGNALS)]

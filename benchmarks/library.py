@@ -1,13 +1,14 @@
 """Solve the open graphs of the instance library, and make its index anew.
 
-    python benchmarks/library.py [NAME …] [--time-limit S] [--solver NAME]
+    python benchmarks/library.py [NAME …] [--time-limit S] [--solver NAME] [--workers N]
 
 Looks for better divisions and bounds than ``instances/solutions`` has, for all graphs whose minimum
 is open, or for those named, so many seconds in each search space; what gets better is written
 there. Then ``instances/index.json`` is written from all graphs and solutions; a bound that stays
-keeps its version and date. ``--time-limit 0`` solves nothing: for a better solution from elsewhere,
-put into that folder as ``NAME.solution.json`` (of the search space surface:
-``NAME.surface.solution.json``). Graphs are made by ``benchmarks/library_graphs.py``.
+keeps its version and date. A bound of a kind that is gone gives way to one of as much by a kind of
+today, and loses its certificate, which nothing verifies. ``--time-limit 0`` solves nothing: for a
+better solution from elsewhere, put into that folder as ``NAME.solution.json`` (of the search space
+surface: ``NAME.surface.solution.json``). Graphs are made by ``benchmarks/library_graphs.py``.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from pathlib import Path
 
 from library_entries import INDEX, SOLUTIONS, Origin, entry_of, graph_files, graph_of
 
+from cellcolor.data.bound_kinds import KINDS, certificate_of
 from cellcolor.data.bounds import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.library_index import LibraryIndex
@@ -31,8 +33,14 @@ from cellcolor.deadline import Deadline
 from cellcolor.machine import this_version
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import STRANDS, Options, Start
+from cellcolor.solvers.registry import make_solver
 
 LIBRARY = Path(__file__).parents[1] / "instances"
+
+EARLIER = "earlier"
+"""The kind of a bound of which only an earlier version knew how it was proved."""
+BY_EARLIER = "Only an earlier version proved at least"
+"""How a note on such a bound begins, or on one of a kind that is gone."""
 
 PAPER = "Yang, Valls Miro, Lai, Wang, Xiong 2020"
 ORIGINS = {
@@ -96,11 +104,15 @@ def version_of(solver: str) -> str:
     return f"{own}, OR-Tools {version('ortools')}" if solver.startswith("cp") else own
 
 
-def improve(name: str, graph: Instance, solver: str, time_limit: float) -> None:
+def improve(
+    name: str, graph: Instance, solver: str, time_limit: float, workers: int | None
+) -> None:
     """Look for a better solution of a graph in both search spaces."""
-    paper = _improved(f"{name}.solution.json", graph, "paper", solver, time_limit)
-    if not paper.proved_for_surface:
-        _improved(f"{name}.surface.solution.json", graph, "surface", solver, time_limit, paper)
+    how = solver, time_limit, workers
+    paper = _improved(f"{name}.solution.json", graph, "paper", *how)
+    wide = f"{name}.surface.solution.json"
+    if not paper.proved_for_surface or (LIBRARY / SOLUTIONS / wide).exists():
+        _improved(wide, graph, "surface", *how, paper)
 
 
 def _improved(
@@ -109,16 +121,18 @@ def _improved(
     space: SearchSpace,
     solver: str,
     time_limit: float,
+    workers: int | None,
     beside: Solution | None = None,
 ) -> Solution:
     """The best of what is stored and what is found; written if it says more than ``beside``."""
     path = LIBRARY / SOLUTIONS / file
     stored = Solution.read(path) if path.exists() else None
     start = None
-    if stored is not None and stored.cells is not None:
+    able = make_solver(solver).abilities.start
+    if able and stored is not None and stored.cells is not None:
         start = Start(stored.cells, stored.seams)
     deadline = Deadline.after(time_limit)
-    options = Options(space, STRANDS[space], start=start, deadline=deadline)
+    options = Options(space, STRANDS[space], deadline, workers, start=start)
     found = solve(graph, options, solver)
     best = found if stored is None else better(stored, found)
     worth = (
@@ -126,7 +140,7 @@ def _improved(
         or segments_of(best) < segments_of(beside)
         or best.surface_lower_bound > beside.surface_lower_bound
     )
-    if best != stored and worth:
+    if best != stored and (worth or stored is not None):
         path.parent.mkdir(exist_ok=True)
         path.write_text(best.to_json(), encoding="utf-8")
     print(
@@ -140,17 +154,24 @@ def _improved(
 def better(stored: Solution, found: Solution) -> Solution:
     """The better division of two solutions of one graph with the better bounds of both."""
     fewest = min((stored, found), key=segments_of)
-    bounds = needed([*(stored.bounds or ()), *(found.bounds or ())])
+    bounds = needed([*of_today(stored), *(found.bounds or ())])
     lower, surface = greatest(bounds, "strands"), greatest(bounds, "surface")
     proved = fewest.segments == surface
     status: Status = "feasible" if fewest.segments is not None else "unknown"
     if proved or (fewest.search_space == "paper" and fewest.segments == lower):
         status = "optimal"
-    if set(map(_worth, bounds)) == set(map(_worth, needed(stored.bounds or ()))):
-        bounds = stored.bounds or ()
+    if set(map(_worth, bounds)) == set(map(_worth, needed(of_today(stored)))):
+        bounds = of_today(stored)
+    earlier = [
+        f"{BY_EARLIER} {bound.value} segments; it says {bound.kind}."
+        for bound in bounds
+        if bound.kind not in KINDS
+    ]
     merged = replace(
         fewest,
         bounds=bounds,
+        model=found.model or stored.model,
+        notes=(*(note for note in fewest.notes if not note.startswith(BY_EARLIER)), *earlier),
         lower_bound=lower,
         surface_lower_bound=surface,
         proved_for_surface=proved,
@@ -159,27 +180,47 @@ def better(stored: Solution, found: Solution) -> Solution:
     return stored if replace(merged, seconds=stored.seconds) == stored else merged
 
 
+def of_today(stored: Solution) -> tuple[Bound, ...]:
+    """Its bounds without certificates that nothing verifies any more.
+
+    What an earlier version called ``model`` or ``crossings`` need not have come from a model.
+    """
+    bounds = []
+    for bound in stored.bounds or ():
+        if certificate_of(bound) is None:
+            bound = replace(bound, certificate=None)
+        if bound.kind in ("model", "crossings") and stored.model is None:
+            bound = replace(bound, kind=EARLIER)
+        bounds.append(bound)
+    return tuple(bounds)
+
+
 def segments_of(solution: Solution) -> float:
     """Its segments; of no division infinitely many."""
     return math.inf if solution.segments is None else solution.segments
 
 
 def needed(bounds: Sequence[Bound]) -> tuple[Bound, ...]:
-    """For each extent the best bound, and the best one with a certificate if that is less."""
+    """For each extent the best bound with a certificate, of a kind of today, and of any kind.
+
+    None that says no more than one before it; one of a kind that is gone makes none superfluous.
+    """
     kept: list[Bound] = []
     for extent in ("surface", "strands"):
         of_extent = [bound for bound in bounds if bound.holds_for == extent]
-        best = max(of_extent, key=_worth, default=None)
         certified = [bound for bound in of_extent if bound.certificate is not None]
-        if best is not None and best.certificate is None and certified:
-            kept.append(max(certified, key=_worth))
-        if best is not None and best.value > max((b.value for b in kept), default=0):
-            kept.append(best)
+        today = [bound for bound in of_extent if bound.kind in KINDS]
+        for group in (certified, today, of_extent):
+            if group:
+                best = max(group, key=_worth)
+                said = [b.value for b in kept if b.kind in KINDS or best.kind not in KINDS]
+                if best.value > max(said, default=0):
+                    kept.append(best)
     return tuple(kept)
 
 
-def _worth(bound: Bound) -> tuple[int, bool]:
-    return bound.value, bound.certificate is not None
+def _worth(bound: Bound) -> tuple[int, bool, bool]:
+    return bound.value, bound.certificate is not None, bound.kind in KINDS
 
 
 def main() -> None:
@@ -190,13 +231,15 @@ def main() -> None:
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--time-limit", type=float, default=60.0)
     parser.add_argument("--solver", default="cp-sat")
+    parser.add_argument("--workers", type=int)
     arguments = parser.parse_args()
     if arguments.time_limit > 0:
         files = graph_files(LIBRARY)
         entries = LibraryIndex.read(LIBRARY / INDEX).entries
         proved = {entry.name for entry in entries if not entry.is_open}
         for name in arguments.names or [name for name in files if name not in proved]:
-            improve(name, graph_of(files[name]), arguments.solver, arguments.time_limit)
+            graph = graph_of(files[name])
+            improve(name, graph, arguments.solver, arguments.time_limit, arguments.workers)
     make_index()
 
 

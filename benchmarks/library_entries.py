@@ -16,6 +16,7 @@ from typing import TypeVar
 from cellcolor.checker.certificates import BoundVerdict
 from cellcolor.checker.claimed_numbers import contradictions
 from cellcolor.checker.division import check_solution
+from cellcolor.data.bound_kinds import KINDS
 from cellcolor.data.instance import Instance
 from cellcolor.data.library_index import (
     KnownRange,
@@ -228,7 +229,8 @@ class _Shown:
 
 
 def _lower(space: SearchSpace, shown: Sequence[_Shown]) -> LowerBound:
-    """The best lower bound that solutions claim, a verified one if there is a choice.
+    """The best lower bound that solutions claim, a verified one if there is a choice, or else one
+    of a kind that is not gone.
 
     A bound for some strands holds in the search space paper, whose divisions have one.
     """
@@ -243,11 +245,10 @@ def _lower(space: SearchSpace, shown: Sequence[_Shown]) -> LowerBound:
         )
         for one in shown
         for verdict in one.verdicts
-        if verdict.bound.of == "segments"
-        and (space == "paper" or verdict.bound.holds_for == "surface")
+        if space == "paper" or verdict.bound.holds_for == "surface"
     ]
     nothing = LowerBound(0, "none", True, "none", "", _NO_DATE)
-    return max([nothing, *bounds], key=lambda bound: (bound.value, bound.verified))
+    return max([nothing, *bounds], key=lambda own: (own.value, own.verified, own.kind in KINDS))
 
 
 def _upper(space: SearchSpace, shown: Sequence[_Shown]) -> UpperBound | None:
@@ -267,9 +268,14 @@ _End = TypeVar("_End", LowerBound, UpperBound)
 
 def _dated(found: _End, kept: _End | None, version_of: Callable[[str], str], date: str) -> _End:
     """An end of a range with version and date: those that it had, if it has not changed."""
-    if kept is not None and (kept.value, kept.solver) == (found.value, found.solver):
+    if kept is not None and _claim(kept) == _claim(found):
         return replace(found, version=kept.version, date=kept.date)
     return replace(found, version=version_of(found.solver), date=date)
+
+
+def _claim(end: LowerBound | UpperBound) -> tuple[int, str, str]:
+    """What an end of a range says, and who found it."""
+    return end.value, end.solver, end.kind if isinstance(end, LowerBound) else ""
 
 
 def _numbers(graph: Instance) -> dict[str, int]:

@@ -66,8 +66,6 @@ sys.exit(main())
 VARIANTS = {
     "paper": ("solve", "--search-space", "paper"),
     "surface": ("solve", "--search-space", "surface"),
-    "paper cuts": ("solve", "--search-space", "paper", "--fewest-cuts"),
-    "surface cuts": ("solve", "--search-space", "surface", "--fewest-cuts"),
     "all": ("solve", "--all"),
     "check": ("check",),
 }

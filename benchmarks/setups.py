@@ -20,7 +20,6 @@ from scipy.stats import qmc
 from cellcolor.deadline import NEVER
 from cellcolor.door.setting_up import ChosenSetUps
 from cellcolor.frontend import Scene
-from cellcolor.questions.choosing_set_ups import Objective
 from cellcolor.questions.placements import Pose
 from cellcolor.questions.placing import coarse_scene
 from cellcolor.questions.setting_up import candidates_of, plan_of
@@ -56,7 +55,7 @@ def main() -> None:
     begun = time.process_time()
     found = candidates_of([scene], places(own, asked.upright), NEVER, by_hand=False)
     built = time.process_time()
-    answer = plan_of(found, 1.0, Objective(), Options(workers=1, seed=0))
+    answer = plan_of(found, 1.0, None, Options(workers=1, seed=0))
     print(answer)
     print(
         f"{len(found.surfaces)} candidates of {len(found.surfaces[0].vertices)} vertices built in "

@@ -8,7 +8,6 @@ from cellcolor.data.coverage import Coverage as Coverage
 from cellcolor.data.instance import Instance as Instance
 from cellcolor.data.joint_plan import ContactPath as ContactPath
 from cellcolor.data.joint_plan import JointPlan as JointPlan
-from cellcolor.data.objective import Objective as Objective
 from cellcolor.data.plan import Plan as Plan
 from cellcolor.data.solution import CellDivision as CellDivision
 from cellcolor.data.solution import Solution as Solution
@@ -30,6 +29,8 @@ from cellcolor.door.comparing import compare as compare
 from cellcolor.door.drawing import Drawing as Drawing
 from cellcolor.door.drawing import show as show
 from cellcolor.door.extras import show_versions as show_versions
+from cellcolor.door.formulating import Formulation as Formulation
+from cellcolor.door.formulating import formulation as formulation
 from cellcolor.door.judging import check as check
 from cellcolor.door.judging import judge as judge
 from cellcolor.door.judging import proven_range as proven_range

@@ -88,10 +88,6 @@ class RefusedResult(ContradictionError):
     """The checker refuses what a solver returned: one of the two is wrong."""
 
 
-class Disagreement(ContradictionError):
-    """Two solvers, or a solver and a search of another kind, contradict each other."""
-
-
 class BeatenBound(ContradictionError):
     """A valid plan has fewer segments than the proven lower bound of its surface.
 

@@ -32,6 +32,7 @@ exclude_patterns = ["_build"]
 
 # Markdown: every heading can be linked to as on GitHub, and a link to nothing is a warning.
 myst_heading_anchors = 3
+myst_enable_extensions = ["dollarmath", "amsmath"]  # formulas, as GitHub renders them too
 
 # The code of the tutorials is run in each build; an error in it ends the build. With
 # ``-D nb_execution_mode=off`` nothing is run or planned, which takes less than half of the time.
@@ -62,7 +63,10 @@ nitpick_ignore_regex = [
         r"py:class",
         r"(.*\.)?(T|Kind|_\w+|FieldInfo|TypeForm|ConfigDict|NoneType|Handler|DataclassInstance)",
     ),
-    (r"py:class", r"Ge|Gt|Le|Lt|MinLen|[\d.e-]+|dict\[str|tuple\[~pathlib\.Path"),
+    (
+        r"py:class",
+        r"Ge|Gt|Le|Lt|MinLen|[\d.e-]+|dict\[(str|int)|tuple\[~pathlib\.Path|list\[list\[tuple\[int",
+    ),
     # Signatures of the front door that Sphinx takes as they are written: they name classes that
     # only type checkers import there.
     (

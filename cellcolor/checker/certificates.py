@@ -12,9 +12,8 @@ from typing import Any, Literal
 
 from cellcolor.checker.color_regions import ColorRegion
 from cellcolor.checker.parts_proof import verify_cells, verify_parts
-from cellcolor.checker.plan_search import BudgetExceeded
-from cellcolor.checker.proof import Proof, Refused
-from cellcolor.data.bound_kinds import certificate_of, kind_of
+from cellcolor.checker.proof import BudgetExceeded, Proof, Refused
+from cellcolor.data.bound_kinds import certificate_of
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
@@ -61,7 +60,6 @@ VERIFIERS: dict[str, Callable[[Proof, Any, int], None]] = {
     "strangers": verify_cells,
     "cover": verify_cells,
     "conflicts": verify_parts,
-    "hubs": verify_parts,
 }
 """What proves a bound, given its certificate and value, or raises ``Refused``; by the kind's name.
 They are this package's own: what says ``verified`` does not rest on what else is installed."""
@@ -73,22 +71,18 @@ def verify_bound(
     regions: Sequence[frozenset[ColorRegion]],
     budget: int = BUDGET,
     deadline: Deadline = NEVER,
-    costs: Sequence[int] | None = None,
 ) -> BoundVerdict:
-    """Verify a lower bound of the number of segments, or of their cost, by its certificate.
+    """Verify a lower bound of the number of segments by its certificate.
 
     Args:
         regions: the color regions that each cell lies in, see
             :mod:`cellcolor.checker.color_regions`.
         budget: how many choices may be tried. The deadline ends them in the same way.
-        costs: what a segment of each color costs, for a bound of costs.
     """
-    proof = Proof(instance, regions, budget, deadline, costs if bound.of == "cost" else None)
+    proof = Proof(instance, regions, budget, deadline)
     outcome: Outcome = "verified"
     reason = ""
     try:
-        if bound.of == "cost" and (costs is None or kind_of(bound).because_of_cost is None):
-            raise Refused(f"{bound.kind} proves nothing of costs")
         certificate = certificate_of(bound)
         if certificate is None or bound.kind not in VERIFIERS:
             return BoundVerdict(bound, "no certificate", budget=budget)

@@ -21,17 +21,14 @@ def number_problems(
     instance: Instance,
     solution: Solution,
     segments: int | None,
-    costs: Sequence[int] | None = None,
 ) -> list[str]:
     """What is wrong with a solution's numbers, each naming its member.
 
     Args:
         segments: of the division, which has been found legal; None without one.
-        costs: what a segment of each color costs; None without an objective.
     """
     problems = _bound_problems(instance, solution, segments)
     problems += _proof_problems(solution, segments)
-    problems += _cost_problems(instance, solution, costs)
     problems += _scheme_problems(instance, solution)
     problems += _cutting_problems(instance, solution)
     if segments is not None:
@@ -60,11 +57,7 @@ def claims(
         value = getattr(solution, name)
         if value > proved:
             found[name] = value
-    if (solution.cost_lower_bound or 0) > max(least, greatest(verified, "strands", "cost")):
-        found["cost_lower_bound"] = solution.cost_lower_bound
-    # What is proved depends on the bound that it meets.
-    decides = found if solution.objective is None else found.keys() & {"cost_lower_bound"}
-    if solution.status == "optimal" and decides:
+    if solution.status == "optimal" and found:
         found["status"] = solution.status
     if solution.proved_for_surface and "surface_lower_bound" in found:
         found["proved_for_surface"] = True
@@ -122,51 +115,12 @@ def _proof_problems(solution: Solution, segments: int | None) -> list[str]:
             f"{surface} and the division has {count(segments, 'segment')}"
         )
     bound = solution.lower_bound if solution.search_space == "paper" else surface
-    if solution.status == "optimal" and solution.objective is None and bound != segments:
+    if solution.status == "optimal" and bound != segments:
         problems.append(
             f"status: a division with {count(segments, 'segment')} is not proved optimal by a "
             f"lower bound of {bound}"
         )
     return problems
-
-
-def _cost_problems(
-    instance: Instance, solution: Solution, costs: Sequence[int] | None
-) -> list[str]:
-    """What is wrong with the cost of the segments, and with what is said of it."""
-    bounds = solution.bounds or ()
-    if costs is None:
-        wrong = any(bound.of == "cost" for bound in bounds)
-        return ["bounds: there is one of the cost without an objective"] if wrong else []
-    problems = []
-    lower = greatest(bounds, "strands", "cost")
-    if solution.cost_lower_bound != lower:
-        said = solution.cost_lower_bound
-        problems.append(f"cost_lower_bound: says {said}, the greatest of bounds is {lower}")
-    if solution.cells is None:
-        most = segments_of_whole_cells(instance, costs)
-        where = f"the {most} that whole cells can be painted for"
-    else:
-        color = {sub.segment: sub.color for cell in solution.cells for sub in cell.subcells}
-        most = sum(costs[own] for own in color.values())
-        where = f"the {most} of the division"
-        if solution.cost != most:
-            problems.append(f"cost: says {solution.cost}, the segments of the division cost {most}")
-        proved = lower
-        if solution.search_space != "paper":
-            proved = greatest(bounds, "surface", "cost")
-        if solution.status == "optimal" and proved != most:
-            problems.append(
-                f"status: a division that costs {most} is not proved optimal by a lower bound of "
-                f"{proved}"
-            )
-    if lower > most:
-        problems.append(f"cost_lower_bound: {lower} cannot be above {where}")
-    return problems + [
-        f"{name}: go with the fewest segments, not with another objective"
-        for name in ("schemes", "cutting_paths")
-        if getattr(solution, name) is not None
-    ]
 
 
 def _scheme_problems(instance: Instance, solution: Solution) -> list[str]:
@@ -211,12 +165,11 @@ _Node = tuple[int, int]
 """A cell, and one of its colors."""
 
 
-def segments_of_whole_cells(instance: Instance, costs: Sequence[int] | None = None) -> int:
+def segments_of_whole_cells(instance: Instance) -> int:
     """The segments of a painting of undivided cells, a large region of one color after another.
 
-    With costs by color it is what these segments cost. To paint every cell whole is legal in both
-    search spaces, with any number of strands, and cells of one color are joined wherever they can
-    be. So the fewest segments are at most these.
+    To paint every cell whole is legal in both search spaces, with any number of strands, and cells
+    of one color are joined wherever they can be. So the fewest segments are at most these.
     """
     regions: Groups[_Node] = Groups()
     for cell in instance.cells:
@@ -236,8 +189,6 @@ def segments_of_whole_cells(instance: Instance, costs: Sequence[int] | None = No
         color = painted.get(edge.left, -1)
         if color in instance.joinable(edge.id) and painted[edge.right] == color:
             segments.join((edge.left, color), (edge.right, color))
-    if costs is not None:
-        return sum(costs[min(segment)[1]] for segment in segments.sets())
     return len(segments.sets())
 
 

@@ -2,7 +2,7 @@
 
 A strand is one of several parallel corridors across an edge; a seam is a virtual edge that makes
 one cyclic list of two loops of a cell (docs/semantics.md, sections 4 and 5). Both solvers put them
-in by code of their own (``dfs/graph.py``, ``cpsat/model/dart_graph.py``). That is on purpose: the
+in by code of their own (``dfs/graph.py``, ``cpsat/dart_graph.py``). That is on purpose: the
 other two reveal a mistake that only one of the three makes.
 """
 

@@ -27,7 +27,6 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import CellDivision, Division, Seam, Solution
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.errors import InputError
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,13 +173,6 @@ def check_solution(
         regions: the color regions that each cell lies in, if they are not to be read off the graph.
     """
     problems: list[str] = []
-    costs = None
-    if solution.objective is not None:
-        try:
-            solution.objective.allow("segments")
-            costs = solution.objective.by_color(instance.colors)
-        except InputError as error:
-            return Report((str(error),), (), None)
     reference = solution.instance
     own = instance.sha256 if reference.of == "graph" else instance.sha256_of_version_1
     if reference.sha256 != own:
@@ -189,7 +181,7 @@ def check_solution(
         problems.append("strands: must be 1 in search space 'paper'")
     regions = regions_of_cells(instance) if regions is None else regions
     verdicts = tuple(
-        verify_bound(instance, bound, regions, deadline=deadline, costs=costs)
+        verify_bound(instance, bound, regions, deadline=deadline)
         for bound in deadline.watch(solution.bounds or ())
     )
     refused = [
@@ -200,12 +192,12 @@ def check_solution(
     if solution.cells is None:
         if solution.seams:
             problems.append("seams: there are none without a division")
-        problems += number_problems(instance, solution, None, costs)
+        problems += number_problems(instance, solution, None)
         return Report(tuple(problems + refused), (), None, verdicts)
     report = check_division(instance, solution.cells, solution.seams, solution.strands)
     problems += report.problems
     if report.segments is not None:
-        problems += number_problems(instance, solution, report.segments, costs)
+        problems += number_problems(instance, solution, report.segments)
     return replace(report, problems=tuple(problems + refused), bounds=verdicts)
 
 

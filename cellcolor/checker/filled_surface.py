@@ -131,11 +131,6 @@ class FilledSurface:
                 bits[above] ^= bits[corner]
         return labels
 
-    @property
-    def is_spheres(self) -> bool:
-        """Whether each component is a sphere."""
-        return self.classes is not None and not any(self.classes.values())
-
     def domain(self, color: int, cells: frozenset[int], start: int) -> Domain:
         """What a color connects with a cell, among the cells of a room."""
         self._count(1 + self.size // WORK)

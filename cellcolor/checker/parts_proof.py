@@ -1,12 +1,10 @@
-"""Verifies certificates that name cells, conflicts, tangles and hubs (docs/bounds.md).
+"""Verifies certificates that name cells and conflicts (docs/bounds.md).
 
 The certificate of a ``cover`` or of ``strangers`` names some cells, and the claim is that fewer
-color regions than the bound says do not touch all of them. That of ``conflicts`` or ``hubs`` names,
-for each part of the surface, such cells as well, pairs of segments that would have to cross, and
-tangles of more of them, or hubs. The color regions that another color can stand in for are left out
-before. What crosses is verified by :mod:`cellcolor.checker.crossing_segments`, what is tangled by
-:mod:`cellcolor.checker.tangles`, and then every way to touch the cells is tried by
-:mod:`cellcolor.checker.plan_search`, to the end or until the budget is used up.
+color regions than the bound says do not touch all of them. That of ``conflicts`` names, for each
+part of the surface, such cells as well, and pairs of segments that would have to cross. What
+crosses is verified by :mod:`cellcolor.checker.crossing_segments`, and then every way to touch the
+cells is tried by :mod:`cellcolor.checker.plan_search`, to the end or until the budget is used up.
 """
 
 from __future__ import annotations
@@ -16,26 +14,14 @@ from collections.abc import Iterator, Sequence
 from cellcolor.checker.color_regions import ColorRegion
 from cellcolor.checker.crossing_segments import TwoRegions
 from cellcolor.checker.filled_surface import WORK
-from cellcolor.checker.hubs import Hubs
-from cellcolor.checker.plan_search import (
-    BudgetExceeded,
-    Conflict,
-    PlanSearch,
-    Tangle,
-    TangledSegment,
-)
-from cellcolor.checker.proof import Proof, Refused, few
-from cellcolor.checker.tangles import Tangled, cannot_be_drawn, is_connected
-from cellcolor.data.bound_kinds import (
-    CertifiedCells,
-    CertifiedPart,
-    CertifiedParts,
-    CertifiedTangle,
-)
+from cellcolor.checker.groups import Groups
+from cellcolor.checker.plan_search import Conflict, PlanSearch
+from cellcolor.checker.proof import BudgetExceeded, Proof, Refused, few
+from cellcolor.data.bound_kinds import CertifiedCells, CertifiedPart, CertifiedParts
 
 
 def verify_cells(proof: Proof, certificate: CertifiedCells, value: int) -> None:
-    """Verify that fewer color regions, or cheaper ones, do not touch all of the cells."""
+    """Verify that fewer color regions do not touch all of the cells."""
     _verify(proof, (CertifiedPart(value, certificate.cells),), value)
 
 
@@ -61,8 +47,6 @@ def _leave_out(proof: Proof, steps: Sequence[tuple[int, int, int]]) -> None:
                 if within and color in joinable and stand_in not in joinable:
                     text = f"color {stand_in} does not continue across edge {abs(dart)}"
                     raise Refused(f"{text}, where color {color} does")
-        if proof.costs is not None and proof.costs[stand_in] > proof.costs[color]:
-            raise Refused(f"color {stand_in} costs more than color {color}")
         if stand_in == color:
             raise Refused(f"color {color} cannot stand in for itself")
         for own in cells:
@@ -75,50 +59,14 @@ def _verify(proof: Proof, parts: Sequence[CertifiedPart], value: int) -> None:
     used: set[ColorRegion] = set()
     for part in parts:
         demands = {cell: proof.regions_of(cell) for cell in part.cells}
-        hubs = {cell: proof.regions_of(cell) for cell in part.hubs}
-        own = frozenset[ColorRegion]().union(*demands.values(), *hubs.values())
+        own = frozenset[ColorRegion]().union(*demands.values())
         if not used.isdisjoint(own):
             raise Refused("one color region lies in two parts")
         used |= own
         conflicts = list(_conflicts(proof, part))
-        tangles = [_tangle(proof, tangle) for tangle in part.tangles]
-        pieces = part.value
-        if part.hubs:
-            demands, saved = _beside_hubs(proof, part)
-            pieces += saved
-        left = proof.budget - proof.tried
-        # Pieces beside hubs are counted; segments cost no less than their number.
-        costs = None if part.hubs else proof.costs
-        search = PlanSearch(demands, conflicts, left, proof.deadline, tangles, costs)
-        try:
-            possible = search.is_possible(pieces - 1)
-        finally:
-            proof.tried += search.tried
-        if possible:
-            what = "segments" if part.conflicts or part.tangles else "color regions"
-            least = f"fewer than {pieces} {what}"
-            if costs is not None:
-                least = f"{what} that cost less than {pieces}"
-            raise Refused(f"{least} touch all of the cells {few(part.cells)}")
-
-
-def _beside_hubs(
-    proof: Proof, part: CertifiedPart
-) -> tuple[dict[int, frozenset[ColorRegion]], int]:
-    """The color regions that are left of each cell to be touched when hubs are taken away, and the
-    most segments that the hubs save, by their links."""
-    if part.conflicts or part.tangles:
-        raise Refused("a part with hubs has conflicts or tangles as well")
-    hubs = Hubs(proof.instance, proof.regions, part.hubs)
-    regions = hubs.regions()
-    for cell in part.cells:
-        if not regions[cell]:
-            raise Refused(f"hub {cell} is to be touched")
-    for hub in part.hubs:
-        if problem := hubs.problem(hub):
-            raise Refused(problem)
-    saved = sum(hubs.links(hub, proof.count) for hub in sorted(set(part.hubs)))
-    return {cell: regions[cell] for cell in part.cells}, saved
+        if PlanSearch(demands, conflicts, proof.count).is_possible(part.value - 1):
+            fewer = f"{part.value} {'segments' if conflicts else 'color regions'}"
+            raise Refused(f"fewer than {fewer} touch all of the cells {few(part.cells)}")
 
 
 def _conflicts(proof: Proof, part: CertifiedPart) -> Iterator[Conflict]:
@@ -148,37 +96,6 @@ def _conflicts(proof: Proof, part: CertifiedPart) -> Iterator[Conflict]:
         yield Conflict((first, second), (ends[0], ends[1], ends[2], ends[3]))
 
 
-def _tangle(proof: Proof, tangle: CertifiedTangle) -> Tangle:
-    """A tangle that is verified."""
-    found: list[TangledSegment] = []
-    drawn: list[Tangled] = []
-    for segment in tangle.segments:
-        named = [cell for group in segment.groups for area in group for cell in area]
-        areas = [area for group in segment.groups for area in group]
-        if not areas or not all(segment.groups) or not all(areas):
-            raise Refused("a tangle names no cells")
-        region = proof.region(segment.color, named[0])
-        for cell in (*named, *segment.avoided):
-            if region not in proof.regions_of(cell):
-                text = f"cell {cell} is not in the color region of cell {named[0]}"
-                raise Refused(f"{text}, as a tangle says")
-        avoided = frozenset(segment.avoided)
-        if not avoided.isdisjoint(named):
-            raise Refused("a segment of a tangle avoids what it touches")
-        cells = frozenset(proof.cells_of(region))
-        proof.count(1 + (len(cells) + len(named)) // 100)
-        groups = tuple(tuple(map(frozenset, group)) for group in segment.groups)
-        for area in (area for group in groups for area in group):
-            _connected(proof, area, segment.color)
-        whole = tuple(frozenset[int]().union(*group) for group in groups)
-        found.append(TangledSegment(region, whole, avoided))
-        drawn.append(Tangled(segment.color, cells - avoided, groups))
-    if not cannot_be_drawn(proof.instance, drawn, proof.count):
-        named = [min(min(area) for area in s.groups[0]) for s in drawn]
-        raise Refused(f"the segments of a tangle, of cells {few(named)}, could be drawn")
-    return tuple(found)
-
-
 def _one_area(proof: Proof, cells: frozenset[int], region: ColorRegion, other: ColorRegion) -> None:
     """Hold cells of one region to be connected in its color, and outside of the other region.
 
@@ -189,12 +106,15 @@ def _one_area(proof: Proof, cells: frozenset[int], region: ColorRegion, other: C
             raise Refused(f"cell {cell} is not in the color region of cell {min(cells)}")
         if other in proof.regions_of(cell):
             raise Refused(f"cell {cell} is in the color regions of both segments")
-    _connected(proof, cells, region[0])
-
-
-def _connected(proof: Proof, cells: frozenset[int], color: int) -> None:
-    """Hold an area to be connected in a color."""
-    loops = [loop for cell in cells for loop in proof.instance.cells[cell].loops]
-    proof.count((len(cells) + sum(map(len, loops))) // WORK)
-    if not is_connected(proof.instance, color, cells):
-        raise Refused(f"the cells {few(cells)} are not connected in color {color}")
+    darts = [dart for c in cells for loop in proof.instance.cells[c].loops for dart in loop]
+    proof.count((len(cells) + len(darts)) // WORK)
+    together: Groups[int] = Groups()
+    for cell in cells:
+        together.find(cell)
+    for dart in darts:
+        edge = proof.instance.edge(abs(dart))
+        inside = edge.left in cells and edge.right in cells
+        if inside and region[0] in proof.instance.joinable(abs(dart)):
+            together.join(edge.left, edge.right)
+    if len(together.sets()) > 1:
+        raise Refused(f"the cells {few(cells)} are not connected in color {region[0]}")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from cellcolor.checker.color_regions import ColorRegion
-from cellcolor.checker.plan_search import BudgetExceeded
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline
 
@@ -16,13 +15,16 @@ class Refused(Exception):
     """A certificate does not prove its bound; the text says why."""
 
 
+class BudgetExceeded(Exception):
+    """More choices than were allowed, or the deadline came first."""
+
+
 class Proof:
     """The steps of one certificate.
 
     Attributes:
         regions: the color regions that each cell lies in, without those that were left out.
         budget: how many choices may be tried. The deadline ends them in the same way.
-        costs: what a segment of each color costs; None for 1 each.
         tried: choices so far.
     """
 
@@ -32,13 +34,11 @@ class Proof:
         regions: Sequence[frozenset[ColorRegion]],
         budget: int,
         deadline: Deadline,
-        costs: Sequence[int] | None = None,
     ) -> None:
         self.instance = instance
         self.regions = list(regions)
         self.budget = budget
         self.deadline = deadline
-        self.costs = costs
         self.tried = 0
 
     def count(self, choices: int = 1) -> None:

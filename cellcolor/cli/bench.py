@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,13 +14,11 @@ from cellcolor.cli.options import (
     JOBS,
     PATH,
     SECONDS,
-    SEED,
     Commands,
     cellcolor,
     output_option,
 )
-from cellcolor.cli.progress import progress_bar
-from cellcolor.cli.terminal import complain, say, say_lines
+from cellcolor.cli.terminal import say, say_lines
 from cellcolor.errors import InputError, system_errors
 from cellcolor.files.writing import PNG, SVG, Output, write
 from cellcolor.solvers.registry import DEFAULT, PAPERS, REFERENCE
@@ -44,8 +41,6 @@ def _numbers(_context: click.Context, _option: click.Parameter, value: str) -> t
     return tuple(dict.fromkeys(found))
 
 
-_SMALL = "ring"
-"""The shipped instance that the start-up is measured with."""
 _TABLES = click.argument("tables", metavar="TABLE.csv…", nargs=-1, required=True, type=PATH)
 
 
@@ -164,78 +159,6 @@ def plots(tables: tuple[Path, ...], output: Path) -> Exit:
             write([Output(file, kind, [render_plot(plot, suffix)])], tables)
             say(file)
     return Exit.DONE
-
-
-@bench.command()
-@click.option(
-    "--repetitions",
-    metavar="N",
-    type=click.IntRange(min=1),
-    default=5,
-    show_default=True,
-    help="Of each measurement.",
-)
-@output_option("TABLE.csv", "A row for each measurement.")
-def start_up(repetitions: int, output: Path | None) -> Exit:
-    """Measure how long the program takes to start."""
-    from cellcolor.cli.bench_run import command_line
-    from cellcolor.door.shipped import find_file
-    from cellcolor.lab.runs.summary import summary_of_timings
-    from cellcolor.lab.runs.table import TableFile
-    from cellcolor.lab.runs.timings import START_UP, Timing, start_up_timings
-
-    made: list[Timing] = []
-    total = repetitions * len(START_UP)
-    with (
-        nullcontext() if output is None else TableFile(output, Timing) as file,
-        progress_bar(total) as advance,
-    ):
-        for one in start_up_timings(find_file(_SMALL), repetitions, command_line()):
-            made.append(one)
-            if file is not None:
-                file.append(one)
-            advance(len(made), one.subject)
-    say_lines("\n".join(summary_of_timings(made)))
-    failed = [one for one in made if one.status != "done"]
-    for one in failed:
-        complain(f"{one.subject}: {one.status}")
-    return Exit.STOPPED if failed else Exit.DONE
-
-
-@bench.command()
-@click.option(
-    "--count",
-    metavar="N",
-    type=click.IntRange(min=1),
-    default=500,
-    show_default=True,
-    help="Random instances.",
-)
-@SEED
-@click.option(
-    "--time-limit",
-    metavar="S",
-    type=SECONDS,
-    default=20.0,
-    show_default=True,
-    help="Seconds for each solve.",
-)
-@click.option("--jobs", default=2, **JOBS)
-@CLUSTER
-@click.option(
-    "-o",
-    "--output",
-    metavar="FOLDER",
-    type=PATH,
-    default=Path("disagreements"),
-    show_default=True,
-    help="Folder for disagreements.",
-)
-def campaign(**given: Any) -> Exit:
-    """Hold the solvers to each other on small instances; exit code 1 if they disagree."""
-    from cellcolor.cli.campaign import run_campaign
-
-    return run_campaign(**given)
 
 
 def _read(tables: Sequence[Path]) -> tuple[list[Row], list[Timing]]:

@@ -179,7 +179,7 @@ def _on_solution(subject: Subject, claim: Path, name: str) -> SolutionVerdict:
 def _checked(found: BoundVerdict) -> CheckedBound:
     bound = found.bound
     outcome = found.outcome, found.reason, found.tried, found.budget
-    return CheckedBound(bound.kind, bound.value, bound.holds_for, *outcome, bound.of)
+    return CheckedBound(bound.kind, bound.value, bound.holds_for, *outcome)
 
 
 def _check_plan(request: Request, subject: Subject, claim: Path) -> Exit:

@@ -23,7 +23,6 @@ from cellcolor.cli.options import (
     WORKERS,
     cellcolor,
     json_option,
-    objective_of,
     one_of,
     output_option,
 )
@@ -147,20 +146,6 @@ def _build_surface(source: Path, output: Path) -> Instance:
 @TOLERANCE
 @click.option("--all", "every", is_flag=True, help="List all optimal schemes.")
 @click.option(
-    "--fewest-cuts",
-    is_flag=True,
-    help="Find one of the best divisions with the fewest cutting paths.",
-)
-@click.option(
-    "--color-cost",
-    "objective",
-    metavar="COLOR=N",
-    multiple=True,
-    callback=objective_of,
-    help="What a segment in a color costs, a whole number, instead of 1; can be given for several "
-    "colors. The sum is minimized.",
-)
-@click.option(
     "--warm-start",
     metavar="SOLUTION.json",
     type=PATH,
@@ -171,12 +156,6 @@ def _build_surface(source: Path, output: Path) -> Instance:
     metavar="N",
     type=click.IntRange(min=1),
     help="With --all, stop after this many schemes.  [default: 1000]",
-)
-@click.option(
-    "--diverse",
-    metavar="N",
-    type=click.IntRange(1, 1000),
-    help="With --all, list only this many schemes, as different from each other as possible.",
 )
 @click.option(
     "--refine-until-stable",
@@ -215,7 +194,6 @@ def _check_solve(
     strands: int | None,
     every: bool,
     limit: int | None,
-    diverse: int | None,
     refine: bool,
     picture: Path | None,
     **given: Any,
@@ -225,8 +203,6 @@ def _check_solve(
     wrong = {
         "--strands needs --search-space surface": strands is not None and search_space == "paper",
         "--limit needs --all": limit is not None and not every,
-        "--diverse needs --all": diverse is not None and not every,
-        "--diverse and --limit exclude each other": diverse is not None and limit is not None,
         "--all needs --search-space paper: schemes are defined only there": (
             every and search_space == "surface"
         ),
@@ -234,8 +210,6 @@ def _check_solve(
         "and --all: they are of a single mesh": (
             refine and (every or asked & {"cover", "required", "left_alone", "warm_start"})
         ),
-        "--color-cost excludes --all, --cover and --refine-until-stable: they are about the "
-        "number of segments": "objective" in asked and (every or refine or "cover" in asked),
         "--picture is of a single file": picture is not None and len(files) > 1,
         "--warm-start takes a single file": "warm_start" in asked and len(files) > 1,
         "--required needs --cover: without it everything has to be": (

@@ -5,16 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.errors import InputError
 from cellcolor.version import __version__
-
-if TYPE_CHECKING:
-    from cellcolor.data.objective import Objective
 
 Command = Callable[..., int]
 
@@ -128,29 +124,6 @@ def _place(_context: click.Context, option: click.Parameter, value: str | None) 
 
 def _deadline(_context: click.Context, _option: click.Parameter, value: float | None) -> Deadline:
     return NEVER if value is None else Deadline.after(value)
-
-
-def objective_of(
-    _context: click.Context, _option: click.Parameter, values: tuple[str, ...]
-) -> Objective | None:
-    """What is minimized, of ``COLOR=N`` for each color; imported where one is given."""
-    if not values:
-        return None
-
-    from cellcolor.data.objective import Objective
-
-    costs: dict[str, int] = {}
-    for value in values:
-        name, _, cost = value.rpartition("=")
-        if not name or not cost.isdecimal():
-            raise click.BadParameter(f"must be COLOR=N, is {value!r}.")
-        if name in costs:
-            raise click.BadParameter(f"has the color {name!r} twice.")
-        costs[name] = int(cost)
-    try:
-        return Objective(costs)
-    except InputError as error:
-        raise click.BadParameter(f"{error.message}: {', '.join(values)}.") from error
 
 
 def one_of(known: Callable[[], Any]) -> Callable[[click.Context, click.Parameter, str], str]:

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from cellcolor.data.solution import Solution
     from cellcolor.solvers.portable import OutsideAnswer
 
-_FORMATS = ("opb", "wcnf", "mps", "dzn", "lp")
+_ANSWERED = ("opb", "wcnf", "mps", "dzn", "lp")
+_FORMATS = ("pbtxt", "pb", *_ANSWERED)
 
 
 @cellcolor.command()
@@ -30,7 +31,8 @@ _FORMATS = ("opb", "wcnf", "mps", "dzn", "lp")
     "--format",
     "kind",
     type=click.Choice(_FORMATS),
-    help="opb: pseudo-Boolean. wcnf: MaxSAT. mps: mixed-integer programs. dzn: data for MiniZinc. "
+    help="pbtxt, pb: the complete model for CP-SAT. opb: pseudo-Boolean. wcnf: MaxSAT. "
+    "mps: mixed-integer programs. dzn: data for MiniZinc. "
     "lp: facts for answer set programs.  [default: from the ending of OUT]",
 )
 def export(source: Path, output: Path, kind: str | None) -> Exit:
@@ -53,8 +55,7 @@ def export(source: Path, output: Path, kind: str | None) -> Exit:
     with apart_from(output):
         instance = read_instance(source)
         with naming(source):
-            lines = form.write(instance)
-        content = (f"{line}\n".encode() for line in lines)
+            content = form.write(instance)
         write([Output(output, form.kind, content)], [source])
         say(f"wrote {output}, for {form.about}")
     return Exit.DONE
@@ -66,7 +67,7 @@ def export(source: Path, output: Path, kind: str | None) -> Exit:
 @click.option(
     "--format",
     "kind",
-    type=click.Choice(_FORMATS),
+    type=click.Choice(_ANSWERED),
     required=True,
     help="The format that the solver was given: opb and wcnf for lines v, mps for a file of names "
     "and values, dzn for what coloring.mzn prints, lp for what clingo prints.",

@@ -23,9 +23,8 @@ from cellcolor.cli.progress import progress_of, scheme_progress_of
 from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solution
 from cellcolor.cli.terminal import apart_from, complain, print_json, say, unheard
 from cellcolor.data.instance import Instance
-from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
 from cellcolor.data.schemes import scheme_line
-from cellcolor.data.solution import Division, SearchSpace, Solution
+from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.drawing import kind_of_picture, kind_of_plot
 from cellcolor.door.result import Result
@@ -45,7 +44,6 @@ from cellcolor.solvers.interface import PORTFOLIO, STRANDS, Options
 
 _SOLUTION = kind_of_format(Solution.FORMAT)
 _SCHEMES = 1000  # that are listed unless --limit says otherwise
-_CHOSEN = "The schemes listed are those of {:,} that differ most from each other, by painted area."
 
 
 class Interrupted(OutOfTime, KeyboardInterrupt):
@@ -83,11 +81,8 @@ class Request:
     left_alone: Place | None
     tolerance: str | None
     every: bool
-    fewest_cuts: bool
-    objective: Objective | None
     warm_start: Path | None
     limit: int | None
-    diverse: int | None
     refine: bool
     picture: Path | None
     time_limit: float | None
@@ -114,8 +109,6 @@ class Request:
             deadline=deadline,
             workers=self.workers,
             seed=self.seed,
-            fewest_cuts=self.fewest_cuts,
-            objective=self.objective or FEWEST_SEGMENTS,
         )
 
 
@@ -187,7 +180,6 @@ def _told(request: Request, file: Path, result: Result) -> Exit:
     return Exit.done_if(
         solution.status == "optimal"
         and solution.complete is not False
-        and solution.cutting_paths == solution.cutting_paths_lower_bound
         and (refinement is None or refinement.stable)
     )
 
@@ -198,8 +190,7 @@ def _check_able(request: Request) -> None:
     What every solver can do is not asked about: bad input has to import no solver.
     """
     start = request.warm_start is not None
-    able = request.search_space == "paper" and request.objective is None
-    if request.every or start or request.fewest_cuts or not able:
+    if request.every or start or request.search_space != "paper":
         from cellcolor.solvers.checked import check_able
 
         try:
@@ -260,8 +251,6 @@ def _solve(file: Path, target: Path | None, request: Request, deadline: Deadline
             time_limit=deadline,
             workers=request.workers,
             seed=request.seed,
-            fewest_cuts=request.fewest_cuts,
-            objective=request.options().objective,
             start=request.warm_start,
             cover=request.cover,
             required=request.required,
@@ -327,17 +316,6 @@ def _spool(target: Path | None) -> Iterator[IO[bytes] | None]:
         yield spool
 
 
-def _found_in_time(schemes: Iterator[Division]) -> list[Division]:
-    """All of them, or those found when the time ran out; then at least one."""
-    found: list[Division] = []
-    try:
-        found.extend(schemes)
-    except OutOfTime:
-        if not found:
-            raise
-    return found
-
-
 def _with_schemes(
     instance: Instance,
     solution: Solution,
@@ -351,7 +329,6 @@ def _with_schemes(
     One more than the limit is looked for: only so is it known whether the limit cut any off.
     """
     from cellcolor.solvers.checked import enumerate_schemes
-    from cellcolor.solvers.diverse import most_different
     from cellcolor.solvers.interface import Start
 
     if solution.status != "optimal" or solution.segments is None:
@@ -366,18 +343,8 @@ def _with_schemes(
     try:
         options, most = request.options(deadline), request.limit or _SCHEMES
         listed = enumerate_schemes(
-            instance,
-            options,
-            request.solver,
-            solution.segments,
-            known,
-            counted.append,
-            pool=request.diverse is not None,
+            instance, options, request.solver, solution.segments, known, counted.append
         )
-        if request.diverse is not None:
-            pool = _found_in_time(listed)
-            listed = iter(most_different(instance, pool, request.diverse))
-            notes = (*notes, _CHOSEN.format(len(pool)))
         for division in listed:
             if found[0] == most:
                 complete = False
@@ -394,8 +361,6 @@ def _with_schemes(
     count, end = found
     if spool is not None:
         spool.truncate(end)
-    if request.diverse is not None:
-        complete = counted == [count]
     if not complete and counted:
         notes = (*notes, f"There are {counted[0]:,} optimal schemes; {count:,} of them are listed.")
     seconds = solution.seconds + time.monotonic() - started

@@ -22,7 +22,7 @@ from cellcolor.data.shares import (
     segment_rows,
     shares_of,
 )
-from cellcolor.data.solution import Solution, witness_in_words
+from cellcolor.data.solution import Solution
 from cellcolor.data.wording import count
 
 _SEGMENTS_SHOWN = 200
@@ -118,19 +118,6 @@ def _summary(solution: Solution) -> list[tuple[str, str]]:
         ),
         ("time", f"{solution.seconds:.2f} s with {solution.solver}"),
     ]
-    if solution.objective is not None:
-        proof = (
-            f"at least {solution.cost_lower_bound} in this search space, "
-            f"{solution.cost_surface_lower_bound} in any division of the surface"
-        )
-        lines[2:2] = [
-            ("cost", f"{_number(solution.cost)} ({proof})"),
-            ("objective", str(solution.objective)),
-        ]
-    if solution.cutting_paths is not None:
-        fewest = solution.cutting_paths == solution.cutting_paths_lower_bound
-        proof = "fewest" if fewest else f"at least {solution.cutting_paths_lower_bound}"
-        lines.insert(2, ("cutting paths", f"{solution.cutting_paths} ({proof})"))
     lines += [("note", note) for note in solution.notes]
     if solution.schemes is not None:
         lines.insert(3, ("schemes", f"{solution.schemes} ({_extent(solution)})"))
@@ -147,20 +134,16 @@ def _extent(solution: Solution) -> str:
 
 
 def _because(instance: Instance, solution: Solution) -> list[tuple[str, str]]:
-    """Why there cannot be fewer segments, or cheaper ones."""
-    witness = None if solution.objective else witness_in_words(instance, solution.witness)
-    reason = witness or solution.reason
-    return [] if reason is None else [("because", reason)]
+    """Why there cannot be fewer segments, or by what that is proved."""
+    told = (("because", solution.why_not_fewer(instance)), ("proved by", solution.proved_by))
+    return [(name, text) for name, text in told if text is not None]
 
 
 def _status(solution: Solution) -> str:
     space: str = solution.search_space
     if space == "surface":
         space += f", {solution.strands} strands"
-    proved = solution.proved_for_surface
-    if solution.objective is not None:
-        proved = solution.cost == solution.cost_surface_lower_bound
-    proof = "; proved for any division" if proved else ""
+    proof = "; proved for any division" if solution.proved_for_surface else ""
     return f"{solution.status} ({space}{proof})"
 
 

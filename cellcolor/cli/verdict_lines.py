@@ -73,8 +73,7 @@ def _say_bounds(verdict: SolutionVerdict) -> None:
     for bound in verdict.bounds:
         tried = f"{bound.tried} of {bound.budget} choices tried"
         more = {"verified": tried, "refused": bound.reason}.get(bound.outcome, f"by {solver}")
-        least = bound.value if bound.of == "segments" else f"cost {bound.value}"
-        say(f"  at least {least} by {bound.kind}: {bound.outcome}, {more}")
+        say(f"  at least {bound.value} by {bound.kind}: {bound.outcome}, {more}")
     if verdict.bounds_by_solver:
         bounds = count(len(verdict.bounds), "bound")
         say(f"  {verdict.bounds_by_solver} of {bounds} by {solver}")
@@ -85,8 +84,7 @@ def say_better(instance: Instance, solution: Solution, verdict: SolutionVerdict)
 
     A bound counts if its certificate was verified, so that nothing is taken on trust.
     """
-    proved = (b for b in verdict.bounds if (b.outcome, b.of) == ("verified", "segments"))
-    bounds = [(b.holds_for, b.value, True) for b in proved]
+    bounds = [(b.holds_for, b.value, True) for b in verdict.bounds if b.outcome == "verified"]
     for entry in library().index.entries:
         if entry.fingerprint == instance.sha256 and (found := entry.beaten_by(solution, bounds)):
             for line in found:

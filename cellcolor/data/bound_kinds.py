@@ -49,14 +49,13 @@ class CertifiedCells(Certificate):
 STRANGERS = BoundKind(
     "that many cells cannot share a segment, no two of them",
     "It holds for the number of segments, also where only those cells have to be covered.",
-    CertifiedCells,
+    certificate=CertifiedCells,
 )
 COVER = BoundKind(
     "fewer color regions cannot touch every cell",
     "It holds for the number of segments, also where only the cells of its certificate have to be "
     "covered.",
-    CertifiedCells,
-    "cheaper color regions cannot touch every cell",
+    certificate=CertifiedCells,
 )
 
 
@@ -81,32 +80,6 @@ class CertifiedCrossing:
 
 
 @dataclass(frozen=True, slots=True)
-class CertifiedSegment:
-    """What a tangle says of one of its segments.
-
-    Attributes:
-        color: its color.
-        groups: groups of areas, each a set of cells; it touches a cell of some area of each group.
-        avoided: cells of its color region, none of which it touches.
-    """
-
-    __pydantic_config__ = Certificate.__pydantic_config__
-
-    color: int
-    groups: tuple[tuple[_Cells, ...], ...]
-    avoided: _Cells = ()
-
-
-@dataclass(frozen=True, slots=True)
-class CertifiedTangle:
-    """Segments that cannot all be drawn."""
-
-    __pydantic_config__ = Certificate.__pydantic_config__
-
-    segments: tuple[CertifiedSegment, ...]
-
-
-@dataclass(frozen=True, slots=True)
 class CertifiedPart:
     """Cells that so many segments at least are needed to touch, and why fewer cannot.
 
@@ -114,8 +87,6 @@ class CertifiedPart:
         value: so many.
         cells: what they are needed to touch.
         conflicts: what two segments cannot do.
-        tangles: what one segment or more cannot do.
-        hubs: cells that are taken away, to see how many pieces of segments are needed.
     """
 
     __pydantic_config__ = Certificate.__pydantic_config__
@@ -123,52 +94,38 @@ class CertifiedPart:
     value: NonNegativeInt
     cells: _Cells
     conflicts: tuple[CertifiedCrossing, ...] = ()
-    tangles: tuple[CertifiedTangle, ...] = ()
-    hubs: _Cells = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CertifiedParts(Certificate):
-    """Parts whose values add up; ``left_out`` has color, a cell of the region, and stand-in."""
+    """Parts whose values add up.
+
+    Attributes:
+        left_out: color regions that are left out, in older certificates: each by its color and one
+            of its cells, with the color that replaces it.
+        parts: no color region of one lies in another.
+    """
 
     left_out: tuple[tuple[int, int, int], ...] = ()
     parts: tuple[CertifiedPart, ...]
 
     def shown(self, value: int, instance: Instance) -> Shown:
-        """One conflict if there is any, or else the cells, with the hubs."""
+        """One conflict if there is any, or else the cells."""
         conflicts = [conflict for part in self.parts for conflict in part.conflicts]
-        tangles = sum(len(part.tangles) for part in self.parts)
         if conflicts:
-            return _conflict_shown(conflicts, tangles, instance)
-        cells, hubs = (
-            sorted({cell for part in self.parts for cell in getattr(part, name)})
-            for name in ("cells", "hubs")
-        )
-        if hubs:
-            notes = (
-                "Without the hubs no two of the cells can share a segment,",
-                "and the hubs join no more.",
-            )
-        elif tangles:
-            fewer = count(value - 1, "segment")
-            notes = (f"No {fewer} that touch all of these cells", "can be drawn side by side.")
-        else:
-            return CertifiedCells(tuple(cells)).shown(value, instance)
-        return Shown(marks_of(instance, cells, hubs), (), notes)
+            return _conflict_shown(conflicts, instance)
+        cells = tuple(cell for part in self.parts for cell in part.cells)
+        return CertifiedCells(cells).shown(value, instance)
 
     def to_document(self) -> dict[str, Any]:
-        """The JSON object; parts have tangles and hubs where there are some."""
+        """The JSON object; ``left_out`` only where there is some."""
         document = Certificate.to_document(self)
-        for part in document["parts"]:
-            for name in ("tangles", "hubs"):
-                if not part[name]:
-                    del part[name]
+        if not self.left_out:
+            del document["left_out"]
         return document
 
 
-def _conflict_shown(
-    conflicts: Sequence[CertifiedCrossing], tangles: int, instance: Instance
-) -> Shown:
+def _conflict_shown(conflicts: Sequence[CertifiedCrossing], instance: Instance) -> Shown:
     """The four areas of one conflict, and two connections, which would cross."""
     first = conflicts[0]
     marks, connections = [], []
@@ -187,24 +144,18 @@ def _conflict_shown(
     ]
     if len(conflicts) > 1:
         notes.append(f"The certificate names {count(len(conflicts) - 1, 'conflict')} more.")
-    if tangles:
-        notes.append(f"It names {count(tangles, 'tangle')} of several segments, too.")
     return Shown(tuple(marks), tuple(connections), tuple(notes))
 
 
 CONFLICTS = BoundKind(
     "fewer segments would have to cross each other",
     EVERY_CELL,
-    CertifiedParts,
-    "cheaper segments would have to cross each other",
-)
-HUBS = BoundKind(
-    "more connections do not fit side by side into cells with many edges",
-    EVERY_CELL,
-    CertifiedParts,
-    "more connections do not fit side by side into cells with many edges",
+    certificate=CertifiedParts,
 )
 
+
+COMPLETE_MODEL = "the complete model"
+"""How texts call the model that a solution gives the size of."""
 
 _STRANDS = (
     "It holds for the number of segments, where every cell has to be covered, in divisions with "
@@ -212,31 +163,33 @@ _STRANDS = (
 )
 
 
-_NOTHING_BETTER = "the full model has nothing better, and more strands would be of no use"
-
-
-_UNKNOWN = BoundKind(because_of_cost="")
-
-
 KINDS = {
     "strangers": STRANGERS,
     "cover": COVER,
     "conflicts": CONFLICTS,
-    "hubs": HUBS,
-    "crossings": BoundKind(_NOTHING_BETTER, EVERY_CELL, because_of_cost=_NOTHING_BETTER),
-    "model": BoundKind("", _STRANDS, because_of_cost=""),
-    "search": BoundKind("", _STRANDS, because_of_cost=""),
+    "exact": BoundKind(
+        "a recursion over the graph has nothing better, and more strands would be of no use",
+        EVERY_CELL,
+        "a recursion over the graph",
+    ),
+    "crossings": BoundKind(
+        f"{COMPLETE_MODEL} has nothing better, and more strands would be of no use", EVERY_CELL
+    ),
+    "model": BoundKind("", _STRANDS, COMPLETE_MODEL),
+    "search": BoundKind("", _STRANDS, "exhaustive search"),
 }
 """What cellcolor writes. A bound may be of another kind: it is kept, and taken on trust."""
 
 
 def kind_of(bound: Bound) -> BoundKind:
     """The kind of a bound; of one that is not known nothing is said."""
-    return KINDS.get(bound.kind, _UNKNOWN)
+    return KINDS.get(bound.kind, BoundKind())
 
 
 def certificate_of(bound: Bound) -> Certificate | None:
     """What a bound can be verified by; None if there is nothing.
+
+    Nothing verifies older certificates any more that have hubs or tangles in a part.
 
     Raises:
         InputError: it is no certificate of its kind.
@@ -244,4 +197,9 @@ def certificate_of(bound: Bound) -> Certificate | None:
     form = kind_of(bound).certificate
     if form is None or bound.certificate is None:
         return None
+    parts = bound.certificate.get("parts")
+    if form is CertifiedParts and isinstance(parts, list):
+        members = {name for part in parts if isinstance(part, dict) for name in part}
+        if not members.isdisjoint(("hubs", "tangles")):
+            return None
     return form.from_document(bound.certificate)

@@ -24,28 +24,23 @@ from cellcolor.files.validation import json_content, settle
 Extent = Literal["surface", "strands"]
 """What a bound holds for: any division of the surface, or those with the solution's strands."""
 
-Bounded = Literal["segments", "cost"]
-"""What a bound is one of: the number of segments, or what they cost (``Objective``)."""
-
 
 @dataclass(frozen=True, slots=True)
 class Bound(Value):
-    """No division of some kind has fewer segments than this, or none costs less.
+    """No division of some kind has fewer segments than this.
 
     Attributes:
         kind: how it was proved; docs/formats.md has the kinds that cellcolor writes.
-        value: the number of segments, or what they cost.
+        value: the number of segments.
         holds_for: ``surface`` for any division of the physical surface, ``strands`` for those
             that the solution's strands allow (in the search space ``paper``: its divisions).
         certificate: what a checker without a solver can verify, if there is one.
-        of: ``segments`` for their number, ``cost`` for what the solution's objective sums up.
     """
 
     kind: str
     value: NonNegativeInt
     holds_for: Extent
     certificate: dict[str, Any] | None = field(default=None, hash=False)
-    of: Bounded = "segments"
 
     def __post_init__(self) -> None:
         settle(self)
@@ -55,8 +50,7 @@ class Bound(Value):
 
     def __str__(self) -> str:
         extent = "any division of the surface" if self.holds_for == "surface" else "these strands"
-        least = count(self.value, "segment") if self.of == "segments" else f"cost {self.value}"
-        return f"at least {least} for {extent}, by {self.kind}"
+        return f"at least {count(self.value, 'segment')} for {extent}, by {self.kind}"
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
@@ -65,23 +59,17 @@ class Bound(Value):
             "value": self.value,
             "holds_for": self.holds_for,
         }
-        if self.of != "segments":
-            document["of"] = self.of
         if self.certificate is not None:
             document["certificate"] = self.certificate
         return document
 
 
-def greatest(bounds: Sequence[Bound], extent: Extent, of: Bounded = "segments") -> int:
+def greatest(bounds: Sequence[Bound], extent: Extent) -> int:
     """The greatest bound for an extent, 0 if there is none.
 
-    What holds for any division of the surface holds for those with strands as well. No segment
-    costs less than 1, so a bound of their number is one of their cost.
+    What holds for any division of the surface holds for those with strands as well.
     """
-    own = (
-        b.value for b in bounds if b.holds_for in ("surface", extent) and b.of in ("segments", of)
-    )
-    return max(own, default=0)
+    return max((b.value for b in bounds if b.holds_for in ("surface", extent)), default=0)
 
 
 EVERY_CELL = "It holds for the number of segments, where every cell has to be covered."
@@ -96,13 +84,13 @@ class Mark:
         label: what is written on them.
         text: what they are.
         cells: the cells.
-        group: marks of one group have one color; None for cells that are taken away.
+        group: marks of one group have one color.
     """
 
     label: str
     text: str
     cells: Collection[int]
-    group: int | None
+    group: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,28 +165,29 @@ class BoundKind:
         because: why no division has fewer segments, a clause; empty for what holds for the
             solution's strands only.
         objective: what it bounds, and what has to be covered for that, a sentence.
+        by: what proves a minimum for the solution's strands; empty for what holds for the surface
+            only.
         certificate: what a bound of this kind can be verified by; None if it is taken on trust.
-        because_of_cost: why no division costs less, a clause, empty as ``because`` is; None if no
-            bound of this kind is one of costs.
     """
 
     because: str = ""
     objective: str = ""
+    by: str = ""
     certificate: type[Certificate] | None = None
-    because_of_cost: str | None = None
 
     def __str__(self) -> str:
         because = f"{self.because[:1].upper()}{self.because[1:]}. " if self.because else ""
         return because + self.objective
 
 
-def marks_of(
-    instance: Instance, cells: Sequence[int], hubs: Sequence[int] = ()
-) -> tuple[Mark, ...]:
-    """Cells, each by itself, and hubs that are taken away, with their colors."""
-    named = [(cell, "cell", number) for number, cell in enumerate(cells)]
-    marks = []
-    for cell, what, group in [*named, *((hub, "hub", None) for hub in hubs)]:
-        colors = listed(instance.colors[color] for color in instance.cells[cell].colors)
-        marks.append(Mark(str(cell), f"{what} {cell}: {colors}", (cell,), group))
-    return tuple(marks)
+def marks_of(instance: Instance, cells: Sequence[int]) -> tuple[Mark, ...]:
+    """Cells, each by itself, with their colors."""
+    return tuple(
+        Mark(
+            str(cell),
+            f"cell {cell}: {listed(instance.colors[c] for c in instance.cells[cell].colors)}",
+            (cell,),
+            number,
+        )
+        for number, cell in enumerate(cells)
+    )

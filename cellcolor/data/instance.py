@@ -80,7 +80,7 @@ class Instance(Document):
     """
 
     FORMAT = "cellcolor/instance"
-    SINCE_VERSION_2 = ("coverage", "surface.sha256")
+    ADDED = (("coverage", "surface.sha256"),)
 
     name: str
     colors: tuple[str, ...]

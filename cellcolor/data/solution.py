@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import combinations
 from os import PathLike
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveInt
 
-from cellcolor.data.bound_kinds import certificate_of, kind_of
-from cellcolor.data.bounds import Bound, greatest
+from cellcolor.data.bound_kinds import COMPLETE_MODEL, certificate_of, kind_of
+from cellcolor.data.bounds import Bound, Extent
 from cellcolor.data.cells_and_edges import DartName, twin
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance
-from cellcolor.data.objective import Objective
 from cellcolor.data.value import Document, Value, adapter_of
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError, naming
@@ -69,16 +68,6 @@ def count_segments(division: Division) -> int:
     return len({sub.segment for cell in division for sub in cell.subcells})
 
 
-def cost_of(division: Division, costs: Sequence[int]) -> int:
-    """What the segments of a division with numbered segments cost.
-
-    Args:
-        costs: what a segment of each color costs.
-    """
-    colors = {sub.segment: sub.color for cell in division for sub in cell.subcells}
-    return sum(costs[color] for color in colors.values())
-
-
 SchemeKey = tuple[frozenset[tuple[int, frozenset[DartName]]], ...]
 
 
@@ -124,6 +113,17 @@ class InstanceReference(Value):
     of: Literal["graph", "text"] = "graph"
 
 
+@dataclass(frozen=True, slots=True)
+class ModelSize(Value):
+    """How large the complete model is that was solved (docs/formulation.md)."""
+
+    variables: NonNegativeInt
+    constraints: NonNegativeInt
+
+    def __str__(self) -> str:
+        return f"{self.variables:,} variables, {self.constraints:,} constraints"
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class Solution(Document):
     """A solver's answer, never stronger than its proof.
@@ -133,8 +133,7 @@ class Solution(Document):
         search_space: ``paper`` or ``surface``.
         strands: strands per topological edge; 1 in ``paper``.
         solver: the solver's name.
-        status: ``optimal`` (the fewest segments, or the least cost where there is an objective, are
-            proved in the search space), ``feasible`` or ``unknown``.
+        status: ``optimal`` (proved in the search space), ``feasible`` or ``unknown``.
         segments: number of segments, None when no division was found.
         lift_offs: ``max(0, segments - 1)``, None when no division was found.
         lower_bound: no division in the search space has fewer segments.
@@ -145,28 +144,18 @@ class Solution(Document):
         seconds: wall-clock time spent solving.
         schemes: with "all optimal schemes" asked for, how many were found.
         complete: with "all optimal schemes" asked for, whether that is all of them.
-        cutting_paths: with "fewest cutting paths" asked for, how many the division has.
-        cutting_paths_lower_bound: with "fewest cutting paths" asked for, no division in the search
-            space with as few segments has fewer.
+        cutting_paths: in older solutions that have it, how many the division has.
+        cutting_paths_lower_bound: in older solutions that have it, no division in the search space
+            with as few segments has fewer.
         bounds: how ``lower_bound`` and ``surface_lower_bound`` were proved, each the greatest of
             its kind in here; None where that is not said, as in files of version 1.
         coverage: the instance's, so that the solution alone gives the shares.
         notes: what was left out and why, a sentence each.
-        objective: what was minimised; None for the number of segments.
-        cost: with an objective, what the segments of the division cost; None without a division.
-        cost_lower_bound: with an objective, no division in the search space costs less.
+        model: how large the complete model is, where one was built and solved.
     """
 
     FORMAT = "cellcolor/solution"
-    SINCE_VERSION_2 = (
-        "bounds",
-        "coverage",
-        "notes",
-        "instance.of",
-        "objective",
-        "cost",
-        "cost_lower_bound",
-    )
+    ADDED = (("bounds", "coverage", "notes", "instance.of"), ("model",))
 
     instance: InstanceReference
     search_space: SearchSpace
@@ -188,9 +177,7 @@ class Solution(Document):
     bounds: tuple[Bound, ...] | None = None
     coverage: Coverage | None = None
     notes: tuple[str, ...] = ()
-    objective: Objective | None = None
-    cost: NonNegativeInt | None = None
-    cost_lower_bound: NonNegativeInt | None = None
+    model: ModelSize | None = None
 
     def __post_init__(self) -> None:
         settle(self)
@@ -209,10 +196,6 @@ class Solution(Document):
             )
         if self.status != "unknown" and missing:
             raise InputError(None, missing[0], f"must not be null in a result {self.status!r}")
-        if (self.objective is None) != (self.cost_lower_bound is None):
-            raise InputError(None, "cost_lower_bound", "goes with objective")
-        if (self.objective is None or self.cells is None) != (self.cost is None):
-            raise InputError(None, "cost", "goes with objective and cells")
 
     @property
     def witness(self) -> tuple[int, ...]:
@@ -226,77 +209,65 @@ class Solution(Document):
         if self.proved_for_surface and 1 < wanted <= _MOST_WITNESSES:
             for bound in self.bounds or ():
                 with suppress(InputError):  # a certificate that says nothing
-                    proving = bound.of == "segments" and bound.value == wanted
-                    certificate = certificate_of(bound) if proving else None
+                    certificate = certificate_of(bound) if bound.value == wanted else None
                     if certificate is not None and (cells := certificate.witness(wanted)):
                         return cells
         return ()
 
-    @property
-    def reason(self) -> str | None:
-        """Why no division of the surface is better, by the kind of its greatest bound.
+    def why_not_fewer(self, instance: Instance | None = None) -> str | None:
+        """Why no division of the surface has fewer segments, a clause.
 
-        None where nothing needs a reason (a single segment) or none is given in the self.
+        None if that is not proved, if it needs no reason (a single segment), or if none is known.
+
+        Args:
+            instance: what was solved, to name the cells of the proof where there are a few.
         """
-        if self.objective is not None:
-            proving = (
-                kind_of(bound).because_of_cost or None
-                for bound in self.bounds or ()
-                if (bound.holds_for, bound.of, bound.value) == ("surface", "cost", self.cost)
-            )
-            return next(proving, None)
         if not self.proved_for_surface or (self.segments or 0) < 2:
             return None
+        witness = None if instance is None else witness_in_words(instance, self.witness)
+        return witness or self._told("surface", "because")
+
+    @property
+    def proved_by(self) -> str | None:
+        """By what a minimum is proved that is one in the search space only, without ``by``.
+
+        None if there is no such proof, or if nothing is known of it.
+        """
+        if self.status != "optimal" or self.proved_for_surface:
+            return None
+        return self._told("strands", "by")
+
+    def _told(self, extent: Extent, member: Literal["because", "by"]) -> str | None:
+        """What the kind of the bound that proves the minimum says of itself."""
         for bound in self.bounds or ():
-            if bound.holds_for == "surface" and bound.value == self.surface_lower_bound:
-                return kind_of(bound).because or None
+            if bound.holds_for == extent and bound.value == self.segments:
+                told: str = getattr(kind_of(bound), member)
+                size = "" if self.model is None else f" ({self.model})"
+                return told.replace(COMPLETE_MODEL, COMPLETE_MODEL + size) or None
         return None
 
-    def in_words(self, reason: str | None = None) -> str:
+    def in_words(self, instance: Instance | None = None) -> str:
         """Segments, lift-offs and proof, like ``2 segments, 1 lift-off, optimal: proved for …``.
 
         Args:
-            reason: why there cannot be fewer segments, a clause, where more is known of it than the
-                solution's bounds say; only used if the number is proved for any division.
+            instance: what was solved, to name the cells of the proof where there are a few.
         """
         if self.segments is None or self.lift_offs is None:
             if self.coverage is not None and self.coverage.covered == 0:
                 return "no division: no point of the surface can be covered"
             return f"no division found; at least {count(self.lower_bound, 'segment')}"
         found = f"{count(self.segments, 'segment')}, {count(self.lift_offs, 'lift-off')}"
-        if self.objective is not None:
-            return f"{found}, {self._cost_in_words()}"
         if self.proved_for_surface:
-            reason = reason or self.reason
+            reason = self.why_not_fewer(instance)
             because = "" if reason is None else f", because {reason}"
             return f"{found}, optimal: proved for any division of the surface{because}"
         everywhere = f"any division of the surface has at least {self.surface_lower_bound}"
         if self.status == "optimal":
-            return f"{found}, optimal in the search space {self.search_space}; {everywhere}"
+            by = "" if self.proved_by is None else f", by {self.proved_by}"
+            return f"{found}, optimal in the search space {self.search_space}{by}; {everywhere}"
         return (
             f"{found}, not proved to be the fewest: at least {self.lower_bound} in the search "
             f"space {self.search_space}; {everywhere}"
-        )
-
-    @property
-    def cost_surface_lower_bound(self) -> int:
-        """With an objective, no division of the physical surface costs less."""
-        return greatest(self.bounds or (), "surface", "cost")
-
-    def _cost_in_words(self) -> str:
-        """The cost, and what is proved of it."""
-        surface = self.cost_surface_lower_bound
-        if self.cost == surface:
-            because = "" if self.reason is None else f", because {self.reason}"
-            return f"cost {self.cost}, optimal: proved for any division of the surface{because}"
-        everywhere = f"any division of the surface costs at least {surface}"
-        if self.status == "optimal":
-            return (
-                f"cost {self.cost}, optimal in the search space {self.search_space}; {everywhere}"
-            )
-        return (
-            f"cost {self.cost}, not proved to be the least: at least {self.cost_lower_bound} in "
-            f"the search space {self.search_space}; {everywhere}"
         )
 
     def __str__(self) -> str:
@@ -309,7 +280,7 @@ class Solution(Document):
         """The JSON object."""
         document: dict[str, Any] = {
             "format": self.FORMAT,
-            "version": 2,
+            "version": 3,
             "instance": {"name": self.instance.name, "sha256": self.instance.sha256},
             "search_space": self.search_space,
             "strands": self.strands,
@@ -321,14 +292,12 @@ class Solution(Document):
             "surface_lower_bound": self.surface_lower_bound,
             "proved_for_surface": self.proved_for_surface,
         }
-        if self.objective is not None:
-            document["objective"] = {"segments": dict(self.objective.segments)}
-            document["cost"] = self.cost
-            document["cost_lower_bound"] = self.cost_lower_bound
         if self.instance.of != "graph":
             document["instance"]["of"] = self.instance.of
         if self.bounds is not None:
             document["bounds"] = [bound.to_document() for bound in self.bounds]
+        if self.model is not None:
+            document["model"] = asdict(self.model)
         if self.coverage is not None:
             document["coverage"] = self.coverage.to_document()
         if self.notes:
@@ -355,7 +324,7 @@ class Solution(Document):
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Solution:
-        body = take_body(document, cls.FORMAT, cls.SINCE_VERSION_2)
+        body = take_body(document, cls.FORMAT, cls.ADDED)
         if document["version"] == 1 and isinstance(body.get("instance"), dict):
             body["instance"] = body["instance"] | {"of": "text"}
         found: Solution = validate(adapter_of(cls), body)

@@ -80,7 +80,7 @@ class LabelledSurface(WithArrays, Document):
     """
 
     FORMAT = "cellcolor/labelled-surface"
-    SINCE_VERSION_2 = ("given_up",)
+    ADDED = (("given_up",),)
 
     name: str
     colors: tuple[str, ...]
@@ -309,7 +309,7 @@ class LabelledSurface(WithArrays, Document):
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> LabelledSurface:
-        body = take_body(document, cls.FORMAT, cls.SINCE_VERSION_2)
+        body = take_body(document, cls.FORMAT, cls.ADDED)
         raw = validate(adapter_of(_SurfaceFile), body)
         return cls(
             raw.name,

@@ -44,8 +44,9 @@ class Document(Value):
 
     __slots__ = ()
     FORMAT: ClassVar[str]
-    SINCE_VERSION_2: ClassVar[tuple[str, ...]] = ()
-    """The members that version 2 added, those of members as ``member.name``."""
+    ADDED: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    """The members that version 2 added, those that version 3 added, and so on; those of members as
+    ``member.name``."""
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Self:
@@ -54,7 +55,7 @@ class Document(Value):
         Raises:
             InputError: anything that the format forbids, with the member.
         """
-        body = take_body(document, cls.FORMAT, cls.SINCE_VERSION_2)
+        body = take_body(document, cls.FORMAT, cls.ADDED)
         found: Self = validate(adapter_of(cls), body)
         return found
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from cellcolor.data.bounds import Bounded
 from cellcolor.data.value import AboutAFile, Count, Value
 
 
@@ -15,13 +14,12 @@ class CheckedBound(Value):
 
     Attributes:
         kind: how the bound was proved.
-        value: there are no fewer segments, or none that cost less.
+        value: there are no fewer segments.
         holds_for: any division of the surface, or those with the solution's strands.
         outcome: verified, refused, or taken on trust: budget exceeded, or no certificate.
         reason: why it was refused, a sentence; empty otherwise.
         tried: how many choices were tried.
         budget: how many could have been tried.
-        of: what the value is one of, the number of segments or their cost.
     """
 
     kind: str
@@ -31,7 +29,6 @@ class CheckedBound(Value):
     reason: str
     tried: Count
     budget: Count
-    of: Bounded = "segments"
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,14 +62,6 @@ class SolutionVerdict(AboutAFile):
     bounds_by_solver: Count
     claimed: dict[str, Any]
     schemes: Count | None
-
-    def to_document(self) -> dict[str, Any]:
-        """The JSON object, the file's name first; bounds of costs say so."""
-        document = AboutAFile.to_document(self)
-        for bound in document["bounds"]:
-            if bound["of"] == "segments":
-                del bound["of"]
-        return document
 
 
 @dataclass(frozen=True, slots=True)

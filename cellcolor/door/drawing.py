@@ -316,18 +316,16 @@ def plot_of_gap(result: Result) -> Plot:
     solution, gap = result.solution, result.gap
     end = gap[-1].seconds if gap else 0.0
     best = tuple((step.seconds, step.segments) for step in gap if step.segments is not None)
-    of = "segments" if solution.objective is None else "cost"
     curves = [
         Curve(f"{bound.kind}: {bound.value}", ((0.0, bound.value), (end, bound.value)))
         for bound in solution.bounds or ()
-        if bound.of == of
     ]
     curves += [
         Curve("lower bound", tuple((step.seconds, step.lower_bound) for step in gap)),
         Curve("best division", best),
     ]
     title = f"{result.instance.name}: {result.solution.status}"
-    return Plot(title, "seconds of the search", of, tuple(curves), joined="steps")
+    return Plot(title, "seconds of the search", "segments", tuple(curves), joined="steps")
 
 
 def save_plot(path: str | PathLike[str], render: Callable[[str], bytes]) -> None:

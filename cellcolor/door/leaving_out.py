@@ -10,7 +10,7 @@ import numpy as np
 
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
-from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
+from cellcolor.data.prices import check_price
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
 from cellcolor.questions.front import Front, FrontChoice, FrontPoint
@@ -32,27 +32,33 @@ class Wanted:
             all of it.
         required: what has to be covered in any case.
         left_alone: what must not be covered.
-        objective: without a share, its price for area left uncovered decides.
+        uncovered_price: without a share, what it costs in lift-offs to leave out all that can be
+            covered.
 
     Raises:
-        InputError: the share is not from 0 to 1, or something is required without share and price.
+        InputError: the share is not from 0 to 1, the price is below 0, both are given, or something
+            is required without either.
     """
 
     cover: float | None = None
     required: Place | None = None
     left_alone: Place | None = None
-    objective: Objective = FEWEST_SEGMENTS
+    uncovered_price: float | None = None
 
     def __post_init__(self) -> None:
         if self.cover is not None and not 0 <= self.cover <= 1:
             raise InputError(None, "cover", f"must be from 0 to 1, is {self.cover:g}")
+        if self.uncovered_price is not None:
+            check_price("uncovered_price", self.uncovered_price)
+            if self.cover is not None:
+                raise InputError(None, "uncovered_price", "goes without cover: either decides")
         if self.whole and self.required is not None:
             raise InputError(None, "required", "goes with cover: without it everything has to be")
 
     @property
     def whole(self) -> bool:
         """Whether all that is not left alone has to be covered."""
-        return self.cover is None and self.objective.uncovered_price is None
+        return self.cover is None and self.uncovered_price is None
 
     @property
     def everything(self) -> bool:
@@ -89,11 +95,12 @@ def rest_of(
         return subject, notes, 1.0
     options = replace(options, deadline=options.deadline.share(_FOR_FRONT))
     front = front_on(subject, None, wanted.required, options)
-    if wanted.cover is None:
-        choice = front.cheapest(wanted.objective)
+    if wanted.uncovered_price is not None:
+        choice = front.cheapest(wanted.uncovered_price)
         point = choice.point
-        notes += (_price_in_words(choice, wanted.objective),)
+        notes += (_price_in_words(choice, wanted.uncovered_price),)
     else:
+        assert wanted.cover is not None
         point = front.at_least(wanted.cover)
         notes += (_share_in_words(front, point, wanted.cover),)
     return _without_cells(subject, point.left_out), notes, point.covered_share
@@ -172,10 +179,10 @@ def _share_in_words(front: Front, point: FrontPoint, cover: float) -> str:
     return f"{text}; with one segment fewer it is at most {most:.1%}, proved for {sure}."
 
 
-def _price_in_words(choice: FrontChoice, objective: Objective) -> str:
+def _price_in_words(choice: FrontChoice, uncovered_price: float) -> str:
     text = (
         f"{choice.point.covered_share:.1%} of what can be covered has to be: if leaving out all of "
-        f"it costs as much as {objective.uncovered_price:g} lift-offs, this costs least"
+        f"it costs as much as {uncovered_price:g} lift-offs, this costs least"
     )
     if choice.proved_for_surface:
         return f"{text}, proved for any division of the surface."

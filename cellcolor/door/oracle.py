@@ -18,7 +18,7 @@ from cellcolor.checker.division import check_solution
 from cellcolor.checker.vertex_plan import PlanReport, check_plan
 from cellcolor.data.joint_plan import ContactPath, JointPlan
 from cellcolor.data.plan import Plan
-from cellcolor.data.solution import Solution, witness_in_words
+from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
@@ -263,8 +263,7 @@ class Oracle:
         proof = self.prove(Deadline.of(self._time_limit))
         if proof.solution is None or proof.decomposition is None:
             return None
-        cells = witness_in_words(proof.decomposition.instance, proof.solution.witness)
-        return cells or proof.solution.reason
+        return proof.solution.why_not_fewer(proof.decomposition.instance)
 
 
 class KeepingOracle(Oracle):

@@ -8,7 +8,7 @@ from dataclasses import replace
 from os import PathLike
 from typing import TYPE_CHECKING
 
-from cellcolor.data.objective import Objective
+from cellcolor.data.prices import check_price
 from cellcolor.deadline import NEVER, Deadline, OutOfTime, TimeLimit
 from cellcolor.door.drawing import save_plot
 from cellcolor.door.extras import extras_for
@@ -99,7 +99,7 @@ def place(
             raise InputError(None, name, f"must be 1 or more, is {number}")
     if cover is not None and not 0 <= cover <= 1:
         raise InputError(None, "cover", f"must be from 0 to 1, is {cover:g}")
-    objective = Objective(uncovered_price=uncovered_price)
+    check_price("uncovered_price", uncovered_price)
     if base and leeway is not None:
         raise InputError(None, "leeway", "is asked of a part only, not of a moved base")
     if cover is None and uncovered_price:
@@ -137,7 +137,7 @@ def place(
         """The best ones in the ranges, none of them next to a better one."""
         chosen: list[PlacedMinimum] = []
         allowed = [row for row in found if is_inside(ranges, row.pose)]  # the start may not be
-        for row in sorted(allowed, key=lambda row: row.rank(enough, objective)):
+        for row in sorted(allowed, key=lambda row: row.rank(enough, uncovered_price)):
             apart = all(distance(ranges, row.pose, other.pose) >= _NEXT for other in chosen)
             if row.segments is not None and apart and len(chosen) < count:
                 chosen.append(row)
@@ -196,7 +196,9 @@ def place(
     complete &= many.complete
     rest = (*tried, *others)
     best_ones = tuple(listed)
-    return Placements(own.name, asked, here, best_ones, rest, complete, tiled, base, objective)
+    return Placements(
+        own.name, asked, here, best_ones, rest, complete, tiled, base, uncovered_price
+    )
 
 
 def save_map(found: Placements, path: str | PathLike[str]) -> None:

@@ -9,7 +9,6 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cellcolor.data.objective import FEWEST_SEGMENTS
 from cellcolor.data.wording import listed
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.door.asking import explain, tradeoff
@@ -312,7 +311,7 @@ def _answered(
             turned = [(x, y, z, roll, pitch, yaw + turns * pi / 2) for turns in (1, 2, 3)]
             found = candidates_of([scene], turned, deadline.share(_FOR_BUILDING), progress)
             options = Options(deadline=deadline)
-            answers.append(plan_of(found, 1.0, FEWEST_SEGMENTS, options, progress))
+            answers.append(plan_of(found, 1.0, None, options, progress))
     except OutOfTime:
         pass  # the page is about the plan, and has what there is
     return AnsweredScene(subject.surface, subject.decomposition, tuple(answers))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.shares import BASES, segment_rows, shares_of
-from cellcolor.data.solution import Solution, witness_in_words
+from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
@@ -26,8 +26,8 @@ class GapStep(NamedTuple):
 
     Attributes:
         seconds: since the search began.
-        segments: of the best division by then, or what it costs; None before there was one.
-        lower_bound: no division in the search space has fewer, or costs less.
+        segments: of the best division by then; None before there was one.
+        lower_bound: no division in the search space has fewer.
     """
 
     seconds: float
@@ -106,7 +106,7 @@ class Result:
         return cellcolor.show(self, path, **view)
 
     def __str__(self) -> str:
-        return self.solution.in_words(witness_in_words(self.instance, self.solution.witness))
+        return self.solution.in_words(self.instance)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self.instance.name!r}: {self}>"

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from cellcolor.checker.division import check_solution
 from cellcolor.data.instance import Instance
-from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
 from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
@@ -88,16 +87,15 @@ def solve(
     time_limit: TimeLimit = None,
     workers: int | None = None,
     seed: int = 0,
-    fewest_cuts: bool = False,
-    objective: Objective = FEWEST_SEGMENTS,
     start: Solution | Result | str | PathLike[str] | None = None,
     cover: float | None = None,
+    uncovered_price: float | None = None,
     required: Place | None = None,
     left_alone: Place | None = None,
     refine_until_stable: bool = False,
     progress: Callable[[int | None, int], None] | None = None,
 ) -> Result:
-    """Find the fewest segments of a scene, a labelled surface or an instance, or the cheapest ones.
+    """Find the fewest segments of a scene, a labelled surface or an instance.
 
     A scene is built and a surface decomposed on the way; the checker sees every result. Where a
     scene's slivers were given up, a note says how many segments there are with them. Where
@@ -113,15 +111,12 @@ def solve(
         time_limit: seconds for all of it, None for no limit.
         workers: CP-SAT's search workers, None for its portfolio.
         seed: for all random choices.
-        fewest_cuts: of the divisions with the fewest segments find one with the fewest cutting
-            paths.
-        objective: what segments cost by color, or what it costs to leave area uncovered, where the
-            number of segments is not all that matters. What is best left out is settled first, as
-            by ``tradeoff``.
         start: a solution to start from, or its file.
         cover: the share of the area that can be covered and is not left alone which has to be, 0
             to 1; None for all of it. What is best left out is settled first, as by ``tradeoff``.
-        required: with ``cover``, vertices that have to be covered whatever is left out: a mask
+        uncovered_price: instead of a share, what it costs in lift-offs to leave out all of that
+            area; a part of it costs that part. What is best left out has the least sum.
+        required: with one of these, vertices that have to be covered whatever is left out: a mask
             (n,), a :class:`~cellcolor.questions.places.WorldBox`, or what a labelled surface gives
             up.
         left_alone: vertices that must not be covered, the same kinds.
@@ -135,15 +130,10 @@ def solve(
         InputError: what is to be solved, or an option, cannot be used.
         OutOfTime: the time limit came before any division was found.
     """
-    objective.allow("segments", "uncovered_price")
-    wanted = Wanted(cover, required, left_alone, objective)
+    wanted = Wanted(cover, required, left_alone, uncovered_price)
     if refine_until_stable and not (wanted.everything and start is None):
-        message = "goes without cover, left_alone and start: they are of a single mesh"
+        message = "goes without what is left out and without start: they are of a single mesh"
         raise InputError(None, "refine_until_stable", message)
-    several = len(objective.asked) > 1
-    if several or (objective.asked and (cover is not None or refine_until_stable)):
-        message = "takes costs of colors or a price of area, without cover and refine_until_stable"
-        raise InputError(None, "objective", message)
     deadline = Deadline.of(time_limit)
     subject = open_subject(source, deadline)
     choosing = Options(deadline=deadline, workers=workers, seed=seed)
@@ -157,8 +147,6 @@ def solve(
         workers=workers,
         seed=seed,
         start=None if start is None else start_from(start, instance, strands),
-        fewest_cuts=fewest_cuts,
-        objective=replace(objective, uncovered_price=None),
     )
     refinement = None
     gap: list[GapStep] = []
@@ -177,10 +165,8 @@ def solve(
                 progress(segments, bound)
 
         solution = checked.solve(instance, options, solver, told)
-        best, bound = solution.segments, solution.lower_bound
-        if solution.cost_lower_bound is not None:
-            best, bound = solution.cost, solution.cost_lower_bound
-        gap.append(GapStep(time.monotonic() - begun, best, bound))
+        seconds = time.monotonic() - begun
+        gap.append(GapStep(seconds, solution.segments, solution.lower_bound))
     solution = _with_minimum_modulo(_with_raw_minimum(solution, subject, options), subject, options)
     notes = (*_tolerance_in_words(subject), *left_out)
     solution = replace(solution, notes=(*notes, *solution.notes))
@@ -276,9 +262,7 @@ def _with_minimum_modulo(solution: Solution, subject: Subject, options: Options)
 def _solved_beside(surface: LabelledSurface, options: Options) -> Solution | str:
     """The minimum of another surface, in at most ten seconds; or why there is none."""
     deadline = Deadline(min(options.deadline.moment, Deadline.after(_BESIDE_SECONDS).moment))
-    asked = replace(
-        options, deadline=deadline, start=None, fewest_cuts=False, objective=FEWEST_SEGMENTS
-    )
+    asked = replace(options, deadline=deadline, start=None)
     try:
         graph = decomposition_of(surface, deadline=deadline).instance
         return checked.solve(graph, asked, DEFAULT)

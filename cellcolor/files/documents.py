@@ -105,30 +105,32 @@ def read_as(path: str | PathLike[str], from_document: Callable[[dict[str, Any]],
 
 
 def take_body(
-    document: dict[str, Any], expected: str, since_version_2: Sequence[str] = ()
+    document: dict[str, Any], expected: str, added: Sequence[Sequence[str]] = ()
 ) -> dict[str, Any]:
     """The document without ``format`` and ``version``, both of which must be the expected ones.
 
     Args:
-        since_version_2: the members that version 2 added, those of members as ``member.name``;
-            without any there is only version 1.
+        added: the members that version 2 added, those that version 3 added, and so on; those of
+            members as ``member.name``.
     """
     body = dict(document)
     found = body.pop("format", None)
     if found != expected:
         raise InputError(None, "format", f"must be {expected!r}, is {found!r}")
     version = body.pop("version", None)
-    newest = 2 if since_version_2 else 1
+    newest = 1 + len(added)
     if type(version) is not int or not 1 <= version <= newest:
-        known = "1" if newest == 1 else "1 or 2"
+        known = "1" if newest == 1 else f"1 to {newest}" if newest > 2 else "1 or 2"
         raise InputError(None, "version", f"must be {known}, is {version!r}")
-    for name in since_version_2 if version == 1 else ():
-        *outer, last = name.split(".")
-        holder: Any = body
-        for part in outer:
-            holder = holder.get(part) if isinstance(holder, dict) else None
-        if isinstance(holder, dict) and last in holder:
-            raise InputError(None, name, "is a member of version 2, but the file says version 1")
+    for later, names in enumerate(added[version - 1 :], start=version + 1):
+        for name in names:
+            *outer, last = name.split(".")
+            holder: Any = body
+            for part in outer:
+                holder = holder.get(part) if isinstance(holder, dict) else None
+            if isinstance(holder, dict) and last in holder:
+                message = f"is a member of version {later}, but the file says version {version}"
+                raise InputError(None, name, message)
     return body
 
 

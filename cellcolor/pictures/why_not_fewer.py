@@ -27,7 +27,6 @@ from cellcolor.pictures.picture import Picture3D
 
 _REST = "#F2F2F2"
 """What says nothing here but can be covered."""
-_TAKEN_AWAY = LINES[0]
 _WAYS = (LINES[0], LINES[5])
 
 
@@ -43,7 +42,7 @@ def draw_why(
         InputError: no certificate of the solution proves more than one segment.
     """
     proved = [v.bound for v in verdicts if v.outcome == "verified" and v.bound.value > 1]
-    surface_bounds = [b for b in proved if (b.holds_for, b.of) == ("surface", "segments")]
+    surface_bounds = [b for b in proved if b.holds_for == "surface"]
     bound = max(surface_bounds, key=lambda bound: bound.value, default=None)
     certificate = None if bound is None else certificate_of(bound)
     if bound is None or certificate is None:
@@ -73,14 +72,7 @@ def _view(
         labels[[vertex for vertex in path if not marked[vertex]]] = len(marks) + number
     for one, other in combinations(drawn, 2):
         labels[list(one & other)] = rest - 1
-    classes = [
-        VertexClass(
-            mark.text,
-            _TAKEN_AWAY if mark.group is None else AREAS[mark.group % len(AREAS)],
-            mark.label,
-        )
-        for mark in marks
-    ]
+    classes = [VertexClass(mark.text, AREAS[mark.group % len(AREAS)], mark.label) for mark in marks]
     classes += [VertexClass(way.text, rgb) for way, rgb in zip(ways, cycle(_WAYS))]
     if ways:
         classes.append(VertexClass("where they cross", WARNING))

@@ -23,7 +23,7 @@ import numpy as np
 from ortools.sat.python import cp_model
 
 from cellcolor.data.cells_and_edges import OUTSIDE
-from cellcolor.data.objective import Objective
+from cellcolor.data.prices import check_change_over
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
@@ -114,7 +114,7 @@ def side_by_side(
 def choose(
     surfaces: Sequence[LabelledSurface],
     cover: float,
-    objective: Objective,
+    change_over: float | None,
     options: Options,
     progress: Callable[[str], None] | None = None,
 ) -> Choice:
@@ -123,17 +123,19 @@ def choose(
     Args:
         surfaces: of each set-up that may be used, all on one mesh.
         cover: the share that has to be covered of the area that any of them reaches, 0 to 1.
-        objective: what a change-over costs.
+        change_over: what a change from one set-up to the next costs, in lift-offs, 1 or more, since
+            it takes a lift-off. None for the fewest set-ups first, whatever that costs.
         options: deadline, workers and seed; the search space is ``paper``.
 
     Raises:
-        InputError: nothing is reached, or the objective asks for something else as well.
+        InputError: nothing is reached, or the price is out of its range.
         OutOfTime: the deadline came before there was any choice.
     """
-    objective.allow("change_over")
-    in_turn = objective.change_over is None  # set-ups first, then segments
+    if change_over is not None:
+        check_change_over(change_over)
+    in_turn = change_over is None  # set-ups first, then segments
     # What a change-over costs beyond the lift-off that it takes; one is counted before the first.
-    extra = round(_UNIT * objective.total(0, 0.0, 1))
+    extra = 0 if change_over is None else round(_UNIT * (change_over - 1))
     report = progress or (lambda _: None)
     asked = _Asked(surfaces, cover, options)
     report("the fewest set-ups")

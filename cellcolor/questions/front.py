@@ -8,8 +8,7 @@ from math import inf, ulp
 from typing import Any
 
 from cellcolor.data.instance import Instance
-from cellcolor.data.objective import Objective
-from cellcolor.data.prices import MOST_CM2
+from cellcolor.data.prices import MOST_CM2, check_price
 from cellcolor.data.solution import Solution
 from cellcolor.data.wording import count, lift_offs_of
 from cellcolor.errors import InputError
@@ -156,18 +155,20 @@ class Front:
                 return point
         raise InputError(None, "share", f"no division is known that covers {100 * share:g} %")
 
-    def cheapest(self, objective: Objective) -> FrontChoice:
+    def cheapest(self, uncovered_price: float) -> FrontChoice:
         """The least sum of lift-offs and of what is left uncovered, and whether none is less.
 
         Args:
-            objective: its ``uncovered_price`` is of all that can be covered.
+            uncovered_price: what it costs to leave out all that can be covered, in lift-offs; a
+                share of it costs that share.
 
         Raises:
-            InputError: it asks for something else as well, or nothing is known.
+            InputError: the price is out of its range, or nothing is known.
         """
-        objective.allow("uncovered_price")
-        worth = objective.uncovered_price or 0.0
-        return self._cheapest(lambda lift_offs, share: objective.total(lift_offs, 1 - share), worth)
+        check_price("uncovered_price", uncovered_price)
+        return self._cheapest(
+            lambda lift_offs, share: lift_offs + uncovered_price * (1 - share), uncovered_price
+        )
 
     def fewest_for(self, share: float) -> FrontChoice:
         """The fewest lift-offs that cover a share, and whether it is proved that no fewer do.
@@ -191,9 +192,7 @@ class Front:
         Raises:
             InputError: the price is out of its range, or the graph has no areas.
         """
-        if not 0 <= lift_off_cm2 <= MOST_CM2:
-            message = f"must be a number from 0 to {MOST_CM2}, is {lift_off_cm2:g}"
-            raise InputError(None, "price", message)
+        check_price("price", lift_off_cm2, most=MOST_CM2)
         if any(cell.area is None for cell in self.instance.cells):
             raise InputError(None, "price", "is one of area, and the cells of this graph have none")
         whole = _CM2 * self.weight

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
 from cellcolor.data.wording import count, lift_offs_of
 
 VARIABLES = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -99,9 +98,7 @@ class PlacedMinimum:
         """Of one of :data:`VARIABLES`."""
         return self.pose[VARIABLES.index(variable)]
 
-    def rank(
-        self, cover: float, objective: Objective = FEWEST_SEGMENTS
-    ) -> tuple[bool, float, bool, float]:
+    def rank(self, cover: float, uncovered_price: float = 0.0) -> tuple[bool, float, bool, float]:
         """What a better placement has less of.
 
         Enough area comes first, then the number of segments plus the price of what is left
@@ -111,7 +108,7 @@ class PlacedMinimum:
         left = 1.0 - self.covered_share
         cost = 0.0
         if enough and self.segments is not None:
-            cost = objective.total(self.segments, left)
+            cost = self.segments + uncovered_price * left
         return not enough, cost, not self.proved_for_surface, left
 
     def to_document(self) -> dict[str, Any]:
@@ -165,7 +162,8 @@ class Placements:
         complete: whether the time limit left nothing out.
         map: where it was asked for.
         base: whether the arm's base is moved instead of the part.
-        objective: what the best have least of; its ``uncovered_price`` is of the whole surface.
+        uncovered_price: of the whole surface, in lift-offs; the best have the least sum of
+            lift-offs and of this price times the share left uncovered.
     """
 
     name: str
@@ -176,7 +174,7 @@ class Placements:
     complete: bool = True
     map: PlacementMap | None = None
     base: bool = False
-    objective: Objective = FEWEST_SEGMENTS
+    uncovered_price: float = 0.0
 
     def __iter__(self) -> Iterator[PlacedMinimum]:
         yield self.here

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.data.objective import Objective
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
@@ -141,12 +140,12 @@ def _check_same_part(part: LabelledSurface | None, prepared: PreparedScene) -> N
 def plan_of(
     candidates: Candidates,
     cover: float,
-    objective: Objective,
+    change_over: float | None,
     options: Options,
     progress: Callable[[str], None] | None = None,
 ) -> SetUpPlan:
     """The set-ups to use; see :func:`~cellcolor.questions.choosing_set_ups.choose`."""
-    choice = choose(candidates.surfaces, cover, objective, options, progress)
+    choice = choose(candidates.surfaces, cover, change_over, options, progress)
     report = progress or (lambda _: None)
     report("one set-up alone")
     areas = choice.surface.vertex_areas

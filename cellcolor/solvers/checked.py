@@ -5,29 +5,25 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any
 
 from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.color_regions import regions_of_cells
-from cellcolor.checker.cutting_paths import cutting_paths
 from cellcolor.checker.dart_lists import MOST_DARTS
 from cellcolor.checker.division import Report, check_scheme, check_solution
 from cellcolor.data.bound_kinds import CertifiedCells, kind_of
-from cellcolor.data.bounds import Bound, Bounded, greatest
+from cellcolor.data.bounds import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import (
     Division,
     InstanceReference,
     Solution,
     Status,
-    cost_of,
     count_segments,
 )
 from cellcolor.data.wording import lift_offs_of
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, RefusedResult
 from cellcolor.solvers.bounds.cover import hard_cells
-from cellcolor.solvers.diverse import pool_of
 from cellcolor.solvers.interface import Answer, OnProgress, Options, SchemeSolver, Start
 from cellcolor.solvers.registry import DEFAULT, make_solver
 from cellcolor.solvers.seamed import Seamed
@@ -49,16 +45,10 @@ def check_able(name: str, options: Options, *, start: bool = False, schemes: boo
     able = make_solver(name).abilities
     for field, asked, can in (
         ("start", start or options.start is not None, able.start),
-        ("fewest_cuts", options.fewest_cuts, able.fewest_cuts),
         ("schemes", schemes, able.optimal_schemes),
-        ("objective", not options.objective.is_default, able.objective),
     ):
         if asked and not can:
             raise InputError(None, field, f"is more than the solver {name} can do")
-    options.objective.allow("segments")
-    if not options.objective.is_default and (schemes or options.fewest_cuts):
-        field = "schemes" if schemes else "fewest_cuts"
-        raise InputError(None, field, "goes with the fewest segments, not with another objective")
     if options.search_space not in able.search_spaces:
         spaces = " and ".join(able.search_spaces)
         message = f"is {options.search_space}, the solver {name} searches {spaces}"
@@ -90,17 +80,16 @@ def solve(
     solver: str = DEFAULT,
     progress: OnProgress | None = None,
 ) -> Solution:
-    """Color an instance with the fewest segments, or those that cost least; the checker sees it.
+    """Color an instance with the fewest segments; the checker sees it.
 
     Raises:
-        InputError: there is no such solver, or it is not able to do what is asked; there are too
-            many strands; or the objective names a color that the instance does not have.
+        InputError: there is no such solver, or it is not able to do what is asked, or there are
+            too many strands.
         TooLarge: the seams of cells with several loops would need too many strands.
         RefusedResult: the checker refuses what the solver found.
     """
     check_able(solver, options)
     chosen = make_solver(solver)
-    costs = options.costs(instance)
     live = len(instance.live_edges)
     if 2 * live * options.strands > MOST_DARTS:
         raise InputError(
@@ -122,7 +111,18 @@ def solve(
         # Covering nothing of a surface in 0 segments would be no answer to anybody's question.
         note = "No point of the surface can be covered: there is nothing to divide."
         answer = Answer(None, (), (), notes=(*answer.notes, note))
-    solution = solution_of(instance, options, solver, answer, time.monotonic() - start, costs)
+    return checked_solution(instance, options, solver, answer, time.monotonic() - start)
+
+
+def checked_solution(
+    instance: Instance, options: Options, solver: str, answer: Answer, seconds: float
+) -> Solution:
+    """What follows from an answer, after the checker has seen it.
+
+    Raises:
+        RefusedResult: the checker refuses what the solver found.
+    """
+    solution = solution_of(instance, options, solver, answer, seconds)
     # Its certificates have been verified just now.
     bare = tuple(replace(bound, certificate=None) for bound in solution.bounds or ())
     _insist(check_solution(instance, replace(solution, bounds=bare)), solver)
@@ -135,29 +135,16 @@ def solution_of(
     solver: str,
     answer: Answer,
     seconds: float,
-    costs: tuple[int, ...] | None = None,
 ) -> Solution:
     """What follows from an answer: its segments are counted, its status is what it has proved."""
-    needed = _needed(answer.bounds, "segments")
-    if costs is not None:
-        needed += _needed(answer.bounds, "cost")
-    bounds = tuple(_certified(instance, b, options.deadline, costs) for b in needed)
+    bounds = tuple(_certified(instance, b, options.deadline) for b in _needed(answer.bounds))
     surface_bound, lower_bound = greatest(bounds, "surface"), greatest(bounds, "strands")
     segments = None if answer.division is None else count_segments(answer.division)
-    weighed: dict[str, Any] = {}
-    value, proved = segments, (surface_bound, lower_bound)
-    if costs is not None:
-        value = None if answer.division is None else cost_of(answer.division, costs)
-        proved = greatest(bounds, "surface", "cost"), greatest(bounds, "strands", "cost")
-        weighed = {"objective": options.objective, "cost": value, "cost_lower_bound": proved[1]}
     status: Status = "feasible"
-    if value is None:
+    if segments is None:
         status = "unknown"
-    elif value == proved[0] or (options.search_space == "paper" and value == proved[1]):
+    elif segments == (lower_bound if options.search_space == "paper" else surface_bound):
         status = "optimal"
-    cuts = None
-    if answer.cutting_paths_lower_bound is not None and answer.division is not None:
-        cuts = cutting_paths(instance, answer.division, answer.seams)
     return Solution(
         instance=InstanceReference(instance.name, instance.sha256),
         search_space=options.search_space,
@@ -172,12 +159,10 @@ def solution_of(
         seams=answer.seams,
         cells=answer.division,
         seconds=seconds,
-        cutting_paths=cuts,
-        cutting_paths_lower_bound=answer.cutting_paths_lower_bound,
         bounds=bounds,
         coverage=instance.coverage,
         notes=answer.notes,
-        **weighed,
+        model=answer.model,
     )
 
 
@@ -188,7 +173,6 @@ def enumerate_schemes(
     segments: int,
     known: Start | None = None,
     counted: Callable[[int], None] | None = None,
-    pool: bool = False,
 ) -> Iterator[Division]:
     """Every optimal scheme (docs/semantics.md, section 3), each once, as they are found.
 
@@ -196,7 +180,6 @@ def enumerate_schemes(
         segments: the minimum, in the search space ``paper``.
         known: a division to start from, for solvers that can.
         counted: told how many schemes there are as soon as the solver knows that.
-        pool: not all, but up to a thousand, drawn at random where the solver has counted them.
 
     Raises:
         InputError: there is no such solver, or it lists no schemes, or none of this instance.
@@ -213,7 +196,7 @@ def enumerate_schemes(
         options = replace(options, start=known)
     found = False
     schemes = chosen.optimal_schemes(instance, options, segments)
-    for division in pool_of(schemes) if pool else schemes:
+    for division in schemes:
         found = True
         if counted is not None and (count := getattr(schemes, "count", None)) is not None:
             counted(count)
@@ -228,8 +211,8 @@ def enumerate_schemes(
         raise RefusedResult(f"{solver} found no scheme with {segments} segments, the minimum")
 
 
-def _needed(bounds: tuple[Bound, ...], of: Bounded) -> tuple[Bound, ...]:
-    """The bounds of one thing without those that an earlier or a more general one makes pointless.
+def _needed(bounds: tuple[Bound, ...]) -> tuple[Bound, ...]:
+    """The bounds without those that an earlier or a more general one makes pointless.
 
     Those for any division of the surface come first, each kind of bound in the order given.
     """
@@ -237,18 +220,15 @@ def _needed(bounds: tuple[Bound, ...], of: Bounded) -> tuple[Bound, ...]:
     for extent in ("surface", "strands"):
         for bound in bounds:
             least = max((b.value for b in kept), default=0)
-            if (bound.holds_for, bound.of) == (extent, of) and bound.value > least:
+            if bound.holds_for == extent and bound.value > least:
                 kept.append(bound)
     return tuple(kept)
 
 
-def _certified(
-    instance: Instance, bound: Bound, deadline: Deadline, costs: tuple[int, ...] | None
-) -> Bound:
+def _certified(instance: Instance, bound: Bound, deadline: Deadline) -> Bound:
     """The bound with what a checker without a solver can verify, where that is known in time."""
     if kind_of(bound).certificate is CertifiedCells and bound.holds_for == "surface":
-        own = costs if bound.of == "cost" else None
-        cells = hard_cells(instance, bound.value, deadline, own)
+        cells = hard_cells(instance, bound.value, deadline)
         if cells is not None:
             bound = replace(bound, certificate=CertifiedCells(tuple(cells)).to_document())
     if bound.certificate is None:
@@ -256,7 +236,7 @@ def _certified(
     # What a solver hands in may be true and yet not prove it: conflicts on handles, say. And what
     # could not be verified here would make the solution invalid if `check` refused it.
     regions = regions_of_cells(instance)
-    verdict = verify_bound(instance, bound, regions, FEW_STEPS, deadline, costs)
+    verdict = verify_bound(instance, bound, regions, FEW_STEPS, deadline)
     return bound if verdict.outcome == "verified" else replace(bound, certificate=None)
 
 

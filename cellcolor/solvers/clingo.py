@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
+from cellcolor.data.solution import ModelSize
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import SolverMissing, TooLarge
 from cellcolor.files.paths import shipped_folder
@@ -96,8 +97,10 @@ class ClingoSolver:
             finally:
                 search.cancel()
                 complete = bool(search.get().exhausted)
+        program = control.statistics["problem"]["lp"]
+        size = ModelSize(int(program["atoms"]), int(program["rules"]))
         if not found:
-            return Answer(None, (), (Bound("search", bounds[-1], "strands"),))
+            return Answer(None, (), (Bound("search", bounds[-1], "strands"),), model=size)
         segments, symbols = found[-1]
         bound = Bound("search", segments if complete else bounds[-1], "strands")
         color: dict[int, int] = {}
@@ -105,7 +108,7 @@ class ClingoSolver:
         for symbol in symbols:
             first, second = (argument.number for argument in symbol.arguments)
             (color if symbol.name == "joined" else after)[first] = second
-        return Answer(division_of_chains(instance, color, after), (), (bound,))
+        return Answer(division_of_chains(instance, color, after), (), (bound,), model=size)
 
 
 def asp_facts(instance: Instance) -> str:

@@ -10,8 +10,7 @@ from annotated_types import Ge, Le
 
 from cellcolor.data.bounds import Bound, greatest
 from cellcolor.data.instance import Instance
-from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
-from cellcolor.data.solution import Division, Seam, SearchSpace
+from cellcolor.data.solution import Division, ModelSize, Seam, SearchSpace
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.validation import settle
@@ -54,9 +53,6 @@ class Options:
         workers: CP-SAT's search workers, at most 1000, None for ``PORTFOLIO``.
         seed: for everything that is random.
         start: a division to start from, for solvers that can do this.
-        fewest_cuts: of the divisions with the fewest segments find one with the fewest cutting
-            paths, for solvers that can do this.
-        objective: what to minimise; other than the number of segments for solvers that can do this.
 
     Raises:
         InputError: an option is out of its range, or strands are asked for in ``paper``.
@@ -68,8 +64,6 @@ class Options:
     workers: Annotated[int, Ge(1), Le(1000)] | None = None
     seed: Annotated[int, Ge(0), Le(2**31 - 1)] = 0
     start: Start | None = None
-    fewest_cuts: bool = False
-    objective: Objective = FEWEST_SEGMENTS
 
     def __post_init__(self) -> None:
         if self.strands is None:
@@ -80,15 +74,6 @@ class Options:
                 None, "strands", f"must be 1 in search space 'paper', is {self.strands}"
             )
 
-    def costs(self, instance: Instance) -> tuple[int, ...] | None:
-        """What a segment of each color costs; None if each costs 1.
-
-        Raises:
-            InputError: the objective names a color that the instance does not have.
-        """
-        costs = self.objective.by_color(instance.colors)
-        return None if self.objective.is_default else costs
-
 
 @dataclass(frozen=True, slots=True)
 class Answer:
@@ -97,17 +82,16 @@ class Answer:
     Attributes:
         division: the best division found, None when none was found.
         seams: the seams that its darts refer to.
-        bounds: what was proved about the fewest segments and the least cost, and how.
-        cutting_paths_lower_bound: no division in the search space with the fewest segments has
-            fewer cutting paths; None when that was not asked for.
+        bounds: what was proved about the fewest segments, and how.
         notes: what was left out and why, a sentence each, such as a model too large to be built.
+        model: how large the complete model of the problem is, if one was built and solved.
     """
 
     division: Division | None
     seams: tuple[Seam, ...]
     bounds: tuple[Bound, ...]
-    cutting_paths_lower_bound: int | None = None
     notes: tuple[str, ...] = ()
+    model: ModelSize | None = None
 
     @property
     def lower_bound(self) -> int:
@@ -129,9 +113,6 @@ class Abilities:
         optimal_schemes: it lists all optimal schemes, so it is a :class:`SchemeSolver`.
         schemes_of_several_loops: it does so even where cells have several live loops.
         start: it can start from a division (``Options.start``).
-        fewest_cuts: it can look for the fewest cutting paths (``Options.fewest_cuts``).
-        objective: it can minimise something else than the number of segments
-            (``Options.objective``). Its bounds of that are ``of`` the cost.
     """
 
     search_spaces: tuple[SearchSpace, ...] = ("paper",)
@@ -139,8 +120,6 @@ class Abilities:
     optimal_schemes: bool = False
     schemes_of_several_loops: bool = False
     start: bool = False
-    fewest_cuts: bool = False
-    objective: bool = False
 
 
 class Solver(Protocol):
@@ -159,8 +138,6 @@ class Solver(Protocol):
         self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
         """A division with the fewest segments, or the best found before the deadline.
-
-        With another objective (``Options.objective``) it is one that costs least.
 
         Raises:
             InputError: a cell has several live loops, and that is more than the solver can do.

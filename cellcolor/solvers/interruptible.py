@@ -9,6 +9,7 @@ from threading import Event, Thread
 from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline
+from cellcolor.errors import CellcolorError
 from cellcolor.solvers.interface import PORTFOLIO
 
 FEW_WORKERS = 2
@@ -70,6 +71,9 @@ def solve_interruptibly(
 
     Returns:
         The solver's status, and the interrupt that ended the search, None if none did.
+
+    Raises:
+        CellcolorError: OR-Tools considers the model invalid.
     """
     status: list[cp_model.CpSolverStatus] = []
     finished = Event()
@@ -90,6 +94,8 @@ def solve_interruptibly(
         except KeyboardInterrupt as error:
             interrupt = error
             solver.stop_search()
+    if status and status[0] == cp_model.MODEL_INVALID:
+        raise CellcolorError(f"OR-Tools refuses the model: {model.validate()}")
     return status[0], interrupt
 
 

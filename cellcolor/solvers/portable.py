@@ -6,6 +6,8 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
@@ -26,12 +28,12 @@ class Portable:
     Attributes:
         about: what reads it.
         begin: a pattern that such a file begins with; other files are not overwritten.
-        write: makes its lines; raises InputError and TooLarge for what the model cannot have.
+        write: makes its content; raises InputError and TooLarge for what the model cannot have.
     """
 
     about: str
     begin: bytes
-    write: Callable[[Instance], Iterator[str]]
+    write: Callable[[Instance], Iterator[bytes]]
 
     @property
     def kind(self) -> FileKind:
@@ -44,16 +46,33 @@ def _title(instance: Instance) -> str:
     return f"fewest segments of {name}, fingerprint {instance.sha256}"
 
 
-def _linear(lines: Callable[[Model, str], Iterator[str]], instance: Instance) -> Iterator[str]:
-    return lines(Coloring(Seamed(instance).instance).model, _title(instance))
+def _linear(lines: Callable[[Model, str], Iterator[str]], instance: Instance) -> Iterator[bytes]:
+    written = lines(Coloring(Seamed(instance).instance).model, _title(instance))
+    return (f"{line}\n".encode() for line in written)
 
 
-def _text(mark: str, text: Callable[[Instance], str], instance: Instance) -> Iterator[str]:
+def _text(mark: str, text: Callable[[Instance], str], instance: Instance) -> Iterator[bytes]:
     body = text(Seamed(instance).instance)
-    return iter([f"{mark} cellcolor: {_title(instance)}", *body.splitlines()])
+    lines = [f"{mark} cellcolor: {_title(instance)}", *body.splitlines()]
+    return (f"{line}\n".encode() for line in lines)
+
+
+def _cp_sat(ending: str, instance: Instance) -> Iterator[bytes]:
+    """The complete model, as OR-Tools writes it."""
+    from cellcolor.solvers.cpsat import CompleteModel
+
+    model = CompleteModel(instance).model
+    model.name = f"cellcolor: {_title(instance)}"
+    with TemporaryDirectory() as folder:
+        path = Path(folder, f"model.{ending}")
+        if not model.export_to_file(str(path)):
+            raise InputError(None, "format", "OR-Tools could not write the model")
+        yield path.read_bytes()
 
 
 PORTABLE = {
+    "pbtxt": Portable("CP-SAT", b'name: "cellcolor: ', partial(_cp_sat, "pbtxt")),
+    "pb": Portable("CP-SAT", rb"\n[\x00-\xff]{1,2}cellcolor: ", partial(_cp_sat, "pb")),
     "opb": Portable(
         "pseudo-Boolean solvers", rb"\* #variable=[^\n]*\n\* cellcolor: ", partial(_linear, opb)
     ),

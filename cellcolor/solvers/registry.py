@@ -31,14 +31,11 @@ REFERENCE = "dfs-cover"
 
 _OWN = {
     "cp-sat": "cellcolor.solvers.cpsat:CpSatSolver",
-    "cp-sat-model": "cellcolor.solvers.cpsat:model_alone",
-    "cp-sat-pointers": "cellcolor.solvers.encodings.pointers:PointersSolver",
-    "cp-sat-ranks": "cellcolor.solvers.encodings.ranks:RanksSolver",
-    "cp-sat-contour": "cellcolor.solvers.encodings.contour:ContourSolver",
+    "cp-sat-model": "cellcolor.solvers.cpsat:CompleteModelSolver",
     "dfs": "cellcolor.solvers.dfs:ReferenceSolver",
     "dfs-cover": "cellcolor.solvers.dfs:CoverReferenceSolver",
     "clingo": "cellcolor.solvers.clingo:ClingoSolver",
-    "choco": "cellcolor.solvers.encodings.choco:ChocoSolver",
+    "choco": "cellcolor.solvers.choco.solver:ChocoSolver",
     "highs": "cellcolor.solvers.linear.rivals:HighsSolver",
     "scip": "cellcolor.solvers.linear.rivals:ScipSolver",
     "maxsat": "cellcolor.solvers.linear.rivals:MaxSatSolver",

@@ -13,7 +13,7 @@ from cellcolor.data.cells_and_edges import Cell, DartName, Edge, Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, number_segments
 from cellcolor.errors import TooLarge
-from cellcolor.solvers.cpsat.model.dart_graph import dart_graph, seams_of
+from cellcolor.solvers.cpsat.dart_graph import dart_graph, seams_of
 
 MOST_STRANDS = 10_000
 """The models grow with the square of the darts of a cell, so that none would have more."""

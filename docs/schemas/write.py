@@ -73,8 +73,8 @@ class Format:
 FORMATS = {
     "labelled-surface-2": Format(2, surface.LabelledSurface, surface._SurfaceFile),
     "instance-2": Format(2, instance.Instance),
-    "solution-2": Format(2, solution.Solution),
-    "scheme-2": Format(None, schemes.SchemeLine),
+    "solution-3": Format(3, solution.Solution),
+    "scheme-3": Format(None, schemes.SchemeLine),
     "plan-1": Format(1, plan.Plan),
     "tool-paths-1": Format(1, tool_paths.ToolPaths, tool_paths._ToolPathsFile),
     "solution-verdict-1": Format(1, verdicts.SolutionVerdict),

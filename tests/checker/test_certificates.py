@@ -17,10 +17,12 @@ from meshes import drawn, surfaces
 
 import cellcolor
 from cellcolor.checker.certificates import verify_bound
+from cellcolor.checker.claimed_numbers import claims
 from cellcolor.checker.color_regions import regions_of_cells, regions_on_surface
 from cellcolor.checker.division import check_solution
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decomposition_of
@@ -162,9 +164,37 @@ def test_what_is_verified_is_no_claim() -> None:
 
 def test_a_bound_of_another_kind_has_none() -> None:
     instance = cellcolor.decompose(THREE)
-    for kind in ("crossings", "model", "search", "whatever"):
+    for kind in ("crossings", "model", "search", "hubs", "whatever"):
         bound = Bound(kind, 3, "surface", {"cells": [0]})
         assert verify_bound(instance, bound, regions_of_cells(instance)).outcome == "no certificate"
+
+
+HUB = {"value": 2, "cells": [0, 1], "conflicts": [], "hubs": [2]}
+TANGLE = {"segments": [{"color": 0, "groups": [[[0]], [[2]]], "avoided": [1]}]}
+TANGLED = {"value": 2, "cells": [0, 1, 2], "conflicts": [], "tangles": [TANGLE]}
+
+
+@pytest.mark.parametrize(
+    ("kind", "parts"),
+    [
+        ("hubs", [HUB]),
+        ("conflicts", [HUB]),
+        ("conflicts", [TANGLED]),
+        ("conflicts", [{**TANGLED, "tangles": []}]),
+        ("conflicts", [{"value": 2, "cells": [0], "conflicts": []}, TANGLED]),
+    ],
+)
+def test_an_older_certificate_of_hubs_or_tangles_is_neither_verified_nor_refused(
+    kind: str, parts: list[dict[str, object]]
+) -> None:
+    """Nothing verifies it any more; the solution stays valid, and its bound is a claim."""
+    instance = cellcolor.decompose(THREE)
+    bound = Bound(kind, 2, "surface", {"left_out": [], "parts": parts})
+    solution = replace(cellcolor.solve(instance).solution, bounds=(bound,))
+    report = cellcolor.check(instance, Solution.from_document(solution.to_document()))
+    assert report.valid
+    assert [verdict.outcome for verdict in report.bounds] == ["no certificate"]
+    assert claims(instance, solution, report.bounds)["lower_bound"] == 2
 
 
 def test_verifying_imports_no_solver() -> None:

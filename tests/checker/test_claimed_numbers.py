@@ -18,6 +18,7 @@ from library import PAPER
 from meshes import surfaces
 
 from cellcolor.checker.claimed_numbers import claims, segments_of_whole_cells
+from cellcolor.checker.cutting_paths import cutting_paths
 from cellcolor.checker.division import check_solution
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell
@@ -46,8 +47,12 @@ def solved(case: int | str, paper: bool) -> tuple[Instance, Solution]:
         instance = decompose(blobs(case, 10, 4, cracks=2))
     else:
         instance = Instance.read(PAPER / f"{case}.json")
-    options = Options("paper", fewest_cuts=True) if paper else Options("surface", 2)
-    return instance, solve(instance, replace(options, workers=1))
+    if not paper:
+        return instance, solve(instance, Options("surface", 2, workers=1))
+    found = solve(instance, Options(workers=1))
+    assert found.cells is not None
+    paths = cutting_paths(instance, found.cells, found.seams)
+    return instance, replace(found, cutting_paths=paths, cutting_paths_lower_bound=0)
 
 
 SOLVED = st.builds(solved, st.integers(0, 5) | st.sampled_from(FIGURES), st.booleans())

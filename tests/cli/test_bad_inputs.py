@@ -58,7 +58,7 @@ GRAPHS = {
     "NaN by name": Bad(json.dumps(INSTANCE).replace("0.5", "NaN"), "NaN"),
     "neither instance nor surface": Bad(json.dumps(PLAN), "format", "cellcolor/plan"),
     "no format": instance_of(drop("format"), "format"),
-    "wrong version": instance_of(put("version", to=3), "version"),
+    "wrong version": instance_of(put("version", to=4), "version"),
     "unknown member": instance_of(put("color", to=[]), "color"),
     "misspelt member": instance_of(
         put("cells", 0, to={"id": 0, "colors": [0], "loop": [[1, 2]]}),
@@ -231,7 +231,11 @@ CLAIMS = {
     "solution truncated": (PAPER / "ring.json", Bad(json.dumps(SOLUTION)[:99], "not JSON")),
     "solution of another version": (
         PAPER / "ring.json",
-        document(SOLUTION, put("version", to=3), "version"),
+        document(SOLUTION, put("version", to=4), "version"),
+    ),
+    "solution with an objective, as an older version wrote it": (
+        PAPER / "ring.json",
+        Bad(json.dumps(SOLUTION | {"objective": {"segments": {"red": 3}}}), "objective"),
     ),
     "solution with null segments": (
         PAPER / "ring.json",
@@ -275,7 +279,6 @@ USAGE = {
     "time that is not a number": ["solve", RING, "--time-limit", "nan"],
     "no workers": ["solve", RING, "--workers", "0"],
     "negative seed": ["solve", RING, "--seed", "-1"],
-    "fewest cuts with dfs": ["solve", RING, "--solver", "dfs", "--fewest-cuts"],
     "warm start with dfs": ["solve", RING, "--solver", "dfs", "--warm-start", RING],
     "warm start of two": ["solve", RING, RING, "--warm-start", RING],
     "build without output": ["build", str(PAPER / "ring.surface.json")],

@@ -1,8 +1,7 @@
-"""``cellcolor bench``: runs, tables that are continued, summaries, plots, start-up."""
+"""``cellcolor bench``: runs, tables that are continued, summaries, plots."""
 
 from __future__ import annotations
 
-import csv
 import os
 import signal
 import subprocess
@@ -21,7 +20,6 @@ from library import PAPER
 from cellcolor import library
 from cellcolor.lab.runs.row import Row
 from cellcolor.lab.runs.table import read_table
-from cellcolor.lab.runs.timings import START_UP, Timing
 from cellcolor.lab.workers import Task
 from cellcolor.processes import Limits
 from cellcolor.solvers.registry import GROUP
@@ -270,22 +268,13 @@ class TestTables:
     def test_what_is_no_table(self, tmp_path: Path, capsys: Capture) -> None:
         other = tmp_path / "other.csv"
         other.write_text("a,b\n1,2\n")
-        for arguments in (["summary", other], ["plots", other, "-o", tmp_path / "p"],
-                          ["run", RING, "-o", other], ["start-up", "-o", other]):  # fmt: skip
+        for arguments in (
+            ["summary", other],
+            ["plots", other, "-o", tmp_path / "p"],
+            ["run", RING, "-o", other],
+        ):
             assert run("bench", *arguments) == 2
             (line,) = capsys.readouterr().err.splitlines()
             assert f"{other}: line 1: " in line
         assert other.read_text() == "a,b\n1,2\n"
         assert not (tmp_path / "p").exists()
-
-    def test_start_up(self, tmp_path: Path, capsys: Capture) -> None:
-        table = tmp_path / "s.csv"
-        assert run("bench", "start-up", "--repetitions", 1, "-o", table) == 0
-        printed = capsys.readouterr().out
-        found = read_table(table, Timing)
-        assert [one.subject for one in found] == list(START_UP)
-        assert all(one.status == "done" and one.seconds > 0 for one in found)
-        assert run("bench", "summary", table) == 0
-        assert capsys.readouterr().out == printed
-        with table.open(newline="") as file:
-            assert next(csv.reader(file))[:2] == ["subject", "way"]

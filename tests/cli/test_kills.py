@@ -48,7 +48,7 @@ def kill(name: str, count: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["solve -o", "campaign -o, all wrong"])
+@pytest.mark.parametrize("name", ["solve -o", "solve --all -o"])
 def test_a_few(name: str) -> None:
     kill(name, 3)
 

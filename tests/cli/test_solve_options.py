@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
 from commands import run
 from library import INSTANCES, PAPER
 
-from cellcolor.data.objective import Objective
 from cellcolor.data.solution import Solution
 
 RING = PAPER / "ring.json"
@@ -21,58 +19,6 @@ Capture = pytest.CaptureFixture[str]
 
 class TestMore:
     """Options beyond the contract: a second objective, a start, a warning, a reason."""
-
-    def test_fewest_cuts(self, tmp_path: Path, capsys: Capture) -> None:
-        target = tmp_path / "solution.json"
-        assert run("solve", PAPER / "split-cell.json", "--fewest-cuts", "-o", target) == 0
-        assert "cutting paths  1 (fewest)" in capsys.readouterr().out
-        solution = Solution.read(target)
-        assert (solution.cutting_paths, solution.cutting_paths_lower_bound) == (1, 1)
-        assert run("check", PAPER / "split-cell.json", target) == 0
-
-    def test_color_cost(self, tmp_path: Path, capsys: Capture) -> None:
-        """What is minimized is told, written and checked; nothing else is done by it."""
-        target = tmp_path / "solution.json"
-        arguments = [CORRIDORS, "--color-cost", "green=2", "--color-cost", "red=4"]
-        assert run("solve", *arguments, "-o", target) == 0
-        out = capsys.readouterr().out
-        solution = Solution.read(target)
-        assert solution.objective == Objective({"green": 2, "red": 4})
-        assert f"cost       {solution.cost} (at least {solution.cost} in this search space" in out
-        assert "what segments cost by color, others 1: green: 2, red: 4" in out
-        assert run("check", CORRIDORS, target) == 0
-        capsys.readouterr()
-        assert run("check", CORRIDORS, target, "--json") == 0
-        bounds = json.loads(capsys.readouterr().out)["bounds"]
-        assert {bound.get("of") for bound in bounds} == {None, "cost"}
-
-    def test_a_bound_of_the_cost_beats_no_index(self, tmp_path: Path, capsys: Capture) -> None:
-        """It is told as one of the cost, and not compared with numbers of segments."""
-        target = tmp_path / "solution.json"
-        graph = INSTANCES / "random" / "hub_24.json"
-        assert run("solve", graph, "--color-cost", "c0=9", "-o", target) == 0
-        capsys.readouterr()
-        assert run("check", graph, target) == 0
-        out = capsys.readouterr().out
-        # 23 is also what a search with CP-SAT finds to be the least, without a certificate.
-        assert "at least cost 23 by conflicts: verified" in out and "better than" not in out
-
-    @pytest.mark.parametrize(
-        ("arguments", "expected"),
-        [
-            (["--color-cost", "red"], "must be COLOR=N, is 'red'"),
-            (["--color-cost", "red=0"], "greater than or equal to 1"),
-            (["--color-cost", "red=2", "--color-cost", "red=3"], "has the color 'red' twice"),
-            (["--color-cost", "red=2", "--all"], "--color-cost excludes --all"),
-            (["--color-cost", "red=2", "--fewest-cuts"], "fewest_cuts: goes with the fewest"),
-            (["--color-cost", "red=2", "--solver", "cp-sat-ranks"], "is more than the solver"),
-            (["--color-cost", "pink=2"], "names the color 'pink', the instance has "),
-        ],
-    )
-    def test_wrong_color_cost(self, arguments: list[str], expected: str, capsys: Capture) -> None:
-        assert run("solve", RING, *arguments) == 2
-        err = capsys.readouterr().err
-        assert err.count("\n") == 1 and expected in err
 
     def test_warm_start(self, tmp_path: Path) -> None:
         """A start that is optimal already is what comes back when there is no time for more."""
@@ -113,3 +59,7 @@ class TestMore:
         assert any(
             f"because cells {cell} and 2 share no color" in " ".join(out.split()) for cell in (0, 1)
         )
+
+    def test_what_proves_a_minimum_of_the_search_space(self, capsys: Capture) -> None:
+        assert run("solve", CORRIDORS, "--solver", "dfs") == 0
+        assert "proved by exhaustive search" in " ".join(capsys.readouterr().out.split())

@@ -117,7 +117,7 @@ def test_joinable_colors() -> None:
     [
         (put("format", to="cellcolor/else"), "format"),
         (drop("format"), "format"),
-        (put("version", to=3), "version"),
+        (put("version", to=4), "version"),
         (put("version", to="1"), "version"),
         (put("version", to=True), "version"),
         (drop("version"), "version"),

@@ -139,7 +139,7 @@ class TestNothingToCover:
         assert self.LOUD in capsys.readouterr().err
         assert Instance.read(tmp_path / "far.json").nothing_to_cover
 
-    @pytest.mark.parametrize("options", [[], ["--solver", "dfs"], ["--fewest-cuts"], ["--all"]])
+    @pytest.mark.parametrize("options", [[], ["--solver", "dfs"], ["--all"]])
     @pytest.mark.parametrize("built", [False, True])
     def test_solve(
         self, built: bool, options: list[str], surface: Path, tmp_path: Path, capsys: Capture

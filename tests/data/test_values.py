@@ -23,7 +23,7 @@ from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
-from cellcolor.data.solution import Solution
+from cellcolor.data.solution import ModelSize, Solution
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.data.value import integers, numbers, rows_of, rows_of_three, truths
 from cellcolor.errors import BeatenBound, InputError
@@ -212,6 +212,43 @@ def test_a_solution_says_no_more_than_is_proved(changes: dict[str, Any], text: s
     assert str(solution) == text
 
 
+@pytest.mark.parametrize(
+    ("kind", "by"),
+    [
+        ("model", ", by the complete model (4,320 variables, 25,093 constraints)"),
+        ("exact", ", by a recursion over the graph"),
+        ("search", ", by exhaustive search"),
+        ("of somebody else", ""),
+    ],
+)
+def test_what_proves_a_minimum_of_the_search_space_alone(kind: str, by: str) -> None:
+    bounds = (Bound("cover", 1, "surface"), Bound(kind, 2, "strands"))
+    found = replace(
+        Solution.from_document(SOLUTION),
+        search_space="paper",
+        strands=1,
+        segments=2,
+        lift_offs=1,
+        lower_bound=2,
+        surface_lower_bound=1,
+        proved_for_surface=False,
+        bounds=bounds,
+        model=ModelSize(4320, 25093),
+    )
+    space = f"optimal in the search space paper{by}; any division of the surface has at least 1"
+    assert str(found) == f"2 segments, 1 lift-off, {space}"
+    assert found.why_not_fewer() is None
+    wide = replace(
+        found,
+        surface_lower_bound=2,
+        proved_for_surface=True,
+        bounds=(Bound("crossings", 2, "surface"),),
+    )
+    reason = wide.why_not_fewer()
+    assert reason is not None and "model (4,320 variables, 25,093 constraints) has" in reason
+    assert wide.proved_by is None
+
+
 def test_every_kind_of_bound_for_the_surface_has_its_reason() -> None:
     """Those that the page on solutions lists; a kind that is not known gives no reason."""
     page = (INSTANCES.parent / "docs" / "formats" / "solutions.md").read_text("utf-8")
@@ -220,6 +257,8 @@ def test_every_kind_of_bound_for_the_surface_has_its_reason() -> None:
     assert all(kind.objective for kind in KINDS.values())
     for_strands = {kind for kind, told in listed.items() if re.search(r"these\s+strands", told)}
     assert for_strands == {"model", "search"}
+    told = {kind for kind, own in KINDS.items() if own.by}
+    assert told == for_strands | {"exact"}
     found = replace(
         Solution.from_document(SOLUTION),
         segments=2,

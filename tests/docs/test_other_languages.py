@@ -80,11 +80,11 @@ def fails_and_passes(
 
 def test_the_messages(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """What the guide says that is printed, without compilers: of each vertex's first color."""
-    surface = cellcolor.read("half_pipe.surface.json")
+    surface = cellcolor.read("hemisphere_flat.surface.json")
     plan = Plan([own[0] if own else None for own in surface.vertex_colors])
     for options, said in (([], CPP_SAID), (["--json"], RUST_SAID)):
         monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(plan.to_json().encode())))
-        command = ["check", "half_pipe.surface.json", "-", "--require-optimal", *options]
+        command = ["check", "hemisphere_flat.surface.json", "-", "--require-optimal", *options]
         assert main(command) == 1
         printed = capsys.readouterr().out
         assert (json.loads(printed)["text"] if options else printed).strip() == said.text.strip()

@@ -196,3 +196,14 @@ def test_version_1_has_no_members_of_version_2(
     with pytest.raises(InputError, match="is a member of version 2") as refusal:
         kind.from_document(old)
     assert refusal.value.field == field
+
+
+def test_version_2_has_no_model() -> None:
+    old = broken(SOLUTION, put("version", to=2))
+    with pytest.raises(InputError, match="is a member of version 3, but the file says version 2"):
+        Solution.from_document(old)
+    read = Solution.from_document(broken(old, drop("model")))
+    assert read == replace(Solution.from_document(SOLUTION), model=None)
+    assert read.to_document()["version"] == 3
+    with pytest.raises(InputError, match="must be 1 to 3, is 4"):
+        Solution.from_document(broken(SOLUTION, put("version", to=4)))

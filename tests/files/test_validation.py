@@ -27,6 +27,7 @@ from cellcolor.data.plan import Plan
 from cellcolor.data.solution import (
     CellDivision,
     InstanceReference,
+    ModelSize,
     Seam,
     Solution,
     SubCell,
@@ -165,6 +166,7 @@ def test_graphs_and_solutions_are_those_of_the_file() -> None:
         bounds=[Bound("cover", one, "surface", {"regions": ()})],
         coverage=made.coverage,
         notes=["The model was too large to be built."],
+        model=ModelSize(np.int64(40), 90),
     )
     assert solution == Solution.from_document(SOLUTION)
     assert json.loads(solution.to_json()) == SOLUTION

@@ -157,15 +157,6 @@ class TestForeignFiles:
         refused(["solve", *files, "-o", tmp_path], capsys, str(plan), "not overwritten")
         assert list(tmp_path.iterdir()) == [plan]
 
-    def test_folder_of_a_campaign(self, tmp_path: Path, capsys: Capture) -> None:
-        path = tmp_path / "file"
-        path.touch()
-        circle = tmp_path / "circle"
-        circle.symlink_to(circle)
-        for output, named in ((path, path), (path / "a" / "b", path), (circle, circle)):
-            arguments = ["bench", "campaign", "--count", 1, "-o", output]
-            refused(arguments, capsys, f"{named}: must be a folder")
-
 
 class TestPictures:
     @pytest.mark.parametrize("kind", ["html", "png", "svg"])
@@ -263,7 +254,6 @@ class TestPlaces:
             refused(["build", RING_SURFACE, "-o", path], capsys, "File name too long")
             refused(["solve", path], capsys, "File name too long")
             refused(["show", RING, "-o", path.with_suffix(".json.png")], capsys, "name too long")
-            refused(["bench", "campaign", "--count", 1, "-o", path], capsys, "File name too long")
             assert list(tmp_path.iterdir()) == []
 
 

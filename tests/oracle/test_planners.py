@@ -30,6 +30,18 @@ def test_the_largest_set_goes_first_even_where_that_is_a_mistake() -> None:
     assert (verdict.segments, verdict.beatable_by) == (3, 1)
 
 
+def test_figure_1_greedy_pays_a_lift_off() -> None:
+    """Blue is the larger set. Painted in full (b) it parts green; green in full (c) leaves one."""
+    surface = LabelledSurface.read(INSTANCES / "paper" / "fig1.surface.json")
+    blue, green = range(2)
+    judge = cellcolor.Oracle(surface)
+    greedy = largest_set_first(surface)
+    assert greedy == [blue if blue in own else green for own in surface.vertex_colors]
+    assert judge.judge(greedy).lift_offs == 2
+    painted = [green if green in own else blue for own in surface.vertex_colors]
+    assert judge.judge(painted).lift_offs == 1 == judge.bounds.lower - 1
+
+
 def test_a_crack_ends_a_set() -> None:
     """Red reaches all six vertices, but four at once at most; blue reaches five at once."""
     surface = drawn("RPP PPP", LABELS, [(0, 1, RED), (1, 3, RED), (3, 4, RED)])

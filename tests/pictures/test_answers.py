@@ -25,7 +25,7 @@ NAME = "wok_obstacle"
 
 
 def page(*answers: object) -> str:
-    made = stand_in(NAME)
+    made = stand_in(NAME, 260)
     subject = made.result.subject
     report = MotionReport(
         made.built,
@@ -42,7 +42,7 @@ def page(*answers: object) -> str:
 
 @pytest.fixture(scope="module")
 def front() -> cellcolor.Front:
-    return cellcolor.tradeoff(stand_in(NAME).built)
+    return cellcolor.tradeoff(stand_in(NAME, 260).built)
 
 
 def rows_of(text: str, title: str) -> list[list[str]]:
@@ -66,9 +66,9 @@ def test_each_point_of_a_front_fills_what_it_covers(front: cellcolor.Front) -> N
     linked = re.findall(r'<tr data-mode="([^"]*)"', text)
     assert [mode["name"] for mode in modes] == linked and len(linked) == len(front.points)
     assert len(re.findall(r"<circle", text)) == len(linked)
-    painted = stand_in(NAME).painted
-    areas = stand_in(NAME).built.surface.vertex_areas
-    given = stand_in(NAME).built.surface
+    painted = stand_in(NAME, 260).painted
+    areas = stand_in(NAME, 260).built.surface.vertex_areas
+    given = stand_in(NAME, 260).built.surface
     can_be = np.array([bool(own) for own in given.vertex_colors])
     for mode, point in zip(modes, front, strict=True):
         labels = np.frombuffer(base64.b64decode(mode["labels"]["base64"]), "<i2")
@@ -112,7 +112,7 @@ def test_set_ups_are_a_table() -> None:
     first = SetUp(1, "part", (0.5, 0, 0, 0, 0, 0), 1, 0.4)
     second = SetUp(3, "part", (0.5, 0, 0, 0, 0, 1.5), 2, 0.6)
     alone = SetUp(1, "part", (0.5, 0, 0, 0, 0, 0), 4, 0.9)
-    made = stand_in(NAME)
+    made = stand_in(NAME, 260)
     solution = replace(made.solution, segments=3, lift_offs=2)
     found = SetUpPlan(
         "part", (first, second), made.built.surface, solution, 1.0, 2, 2, False, alone, 4

@@ -20,11 +20,13 @@ from joint_paths import SLIDE, driven_scara
 from pages import DESKTOP, PHONE, opened
 from stand_in import stand_in
 
+from cellcolor.data.bounds import Bound
+from cellcolor.data.solution import ModelSize
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import Fault
 from cellcolor.files.writing import HTML
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.pictures.report_page.cards import badges_of
+from cellcolor.pictures.report_page.cards import badges_of, cards_of
 from cellcolor.pictures.report_page.content import MotionReport
 from cellcolor.pictures.report_page.page import render_page
 from cellcolor.pictures.report_page.viewer_data import frames_of, straightened
@@ -333,6 +335,23 @@ def test_a_straightened_line_passes_all_points(
         chord = points[first] + np.linspace(0, 1, 400)[:, None] * (points[last] - points[first])
         for between in points[first + 1 : last]:
             assert np.linalg.norm(chord - between, axis=1).min() <= tolerance + 5e-3
+
+
+def test_the_page_says_what_proves_a_minimum_of_the_search_space() -> None:
+    made = stand_in()
+    proved = replace(
+        made.solution,
+        search_space="paper",
+        strands=1,
+        surface_lower_bound=1,
+        proved_for_surface=False,
+        bounds=(Bound("cover", 1, "surface"), Bound("model", 2, "strands")),
+        model=ModelSize(30, 70),
+    )
+    assert proved.segments == 2
+    (card,) = [c for c in cards_of(report(solution=proved)) if c.title.startswith("Can there be")]
+    by = "by the complete model (30 variables, 70 constraints)"
+    assert card.paragraphs[0].endswith(f"the fewest in the search space paper, {by}.")
 
 
 def test_badges_count_against_the_proof() -> None:

@@ -116,7 +116,7 @@ def test_what_is_bound_to_the_world_is_named(scene: Any, field: str) -> None:
 )
 def test_with_a_price_the_sum_is_least(rows: list[tuple[int, int]], price: float) -> None:
     values = [PlacedMinimum(NO_POSE, n, share / 100, True, 1) for n, share in rows]
-    best = min(values, key=lambda row: row.rank(0.0, cellcolor.Objective(uncovered_price=price)))
+    best = min(values, key=lambda row: row.rank(0.0, price))
     sums = [n - 1 + price * (1 - share / 100) for n, share in rows]
     assert best.lift_offs is not None
     assert best.lift_offs + price * (1 - best.covered_share) == pytest.approx(min(sums))

@@ -19,7 +19,6 @@ from shipped import shipped
 
 import cellcolor
 from cellcolor.data.cells_and_edges import OUTSIDE
-from cellcolor.data.objective import Objective
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import blobs
@@ -85,7 +84,7 @@ def test_no_choice_has_fewer_set_ups_or_fewer_segments(seed: int, count: int, li
     with pytest.MonkeyPatch.context() as patch:
         if not listed:
             patch.setattr(choosing_set_ups, "_MOST_SETS", 0)
-        choice = choose(surfaces, 1.0, Objective(), Options())
+        choice = choose(surfaces, 1.0, None, Options())
     assert len(choice.set_ups) == choice.fewest_set_ups == len(sets[0])
     assert choice.set_ups in sets
     assert choice.covered_share == pytest.approx(1.0)
@@ -114,7 +113,7 @@ def test_a_share_is_covered_with_no_fewer_set_ups(seed: int, count: int, share: 
         weights = np.bincount(cell[inside], areas[inside], len(found.instance.cells))
         fronts = front_by_subsets(found.instance, weights.tolist())
         least.append(min(k for k, w in fronts.items() if w >= share * whole - 1e-9))
-    choice = choose(surfaces, share, Objective(), Options())
+    choice = choose(surfaces, share, None, Options())
     assert len(choice.set_ups) == len(sets[0])
     assert choice.covered_share >= share - 1e-9
     assert choice.solution.segments >= min(least)
@@ -139,7 +138,7 @@ def test_a_change_over_has_its_price(seed: int, price: float) -> None:
                 graph = decomposition_of(together([surfaces[n] for n in some])).instance
                 assume(graph.most_live_loops < 2)
                 costs.append(minimum(graph) - size + Fraction(str(price)) * (size - 1))
-    choice = choose(surfaces, 1.0, Objective(change_over=price), Options())
+    choice = choose(surfaces, 1.0, price, Options())
     used = len(choice.set_ups)
     assert (choice.solution.segments or 0) - used + Fraction(str(price)) * (used - 1) == min(costs)
 
@@ -151,8 +150,8 @@ def test_at_the_highest_price_segments_still_count(seed: int) -> None:
     With 1e17, to which floating point adds no segments, up to 6 instead of 3 were called proved.
     """
     surfaces = [blobs(seed + n, size=6, colors=3, coverage=(0.3, 0.7)) for n in range(4)]
-    in_turn = choose(surfaces, 1.0, Objective(), Options())
-    priced = choose(surfaces, 1.0, Objective(change_over=1_000_000), Options())
+    in_turn = choose(surfaces, 1.0, None, Options())
+    priced = choose(surfaces, 1.0, 1_000_000, Options())
     assert in_turn.proved and priced.proved
     assert priced.solution.segments == in_turn.solution.segments
     assert len(priced.set_ups) == len(in_turn.set_ups) == in_turn.fewest_set_ups
@@ -229,8 +228,10 @@ def test_what_cannot_be_set_up_is_refused_in_a_line(
         inside = shipped("wok_obstacle", 80).moved(position_m=(0, 0, 0))
         cellcolor.setups(inside)
     for price in (float("nan"), 1e17, 1e306, 0.5):
-        with pytest.raises(cellcolor.InputError, match="change_over"):
+        with pytest.raises(cellcolor.InputError, match=r"change_over: must be .* 1 to 1000000"):
             cellcolor.setups("wok_obstacle", change_over=price)
+    with pytest.raises(cellcolor.InputError, match="change_over: must have no more than three"):
+        choose([], 1.0, 1.0004, Options())
 
 
 def test_the_command_takes_what_place_prints(

@@ -14,7 +14,6 @@ from vertex_minima import front_by_vertices
 
 import cellcolor
 from cellcolor.data.cells_and_edges import OUTSIDE
-from cellcolor.data.objective import Objective
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.questions.front import Front
@@ -151,17 +150,16 @@ def test_the_largest_parts_come_first() -> None:
     assert front.at_least(expected[0] + 0.01).lift_offs == 1
     # A lift-off that costs more than C is worth is not made.
     for worth, lift_offs in ((0.5, 1), (2.0, 2)):
-        objective = Objective(uncovered_price=worth / (1 - expected[1]))
-        choice = front.cheapest(objective)
+        price = worth / (1 - expected[1])
+        choice = front.cheapest(price)
         assert choice.point.lift_offs == lift_offs and choice.proved_for_surface
-        solved = cellcolor.solve(STRIP, objective=objective)
+        solved = cellcolor.solve(STRIP, uncovered_price=price)
         assert (solved.lift_offs, solved.covered_share) == (lift_offs, choice.point.covered_share)
         assert "this costs least, proved for any division" in solved.solution.notes[0]
-        assert solved.solution.objective is None
     with pytest.raises(
-        cellcolor.InputError, match=r"objective\.segments: cannot be minimized here"
+        cellcolor.InputError, match="uncovered_price: must be a number from 0 to 1000000"
     ):
-        front.cheapest(Objective({"red": 2}))
+        front.cheapest(-1.0)
 
 
 def test_weights_and_places() -> None:

@@ -3,32 +3,35 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
 from exhaustive_minima import literal_minimum, live_darts, minimum, optimal_schemes
-from library import PAPER
+from library import INSTANCES, PAPER
+from ortools.sat.python import cp_model
 from vertex_minima import vertex_minimum
 
 from cellcolor.checker.division import check_division
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import SchemeKey, scheme_key
+from cellcolor.data.solution import SchemeKey, count_segments, scheme_key
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, planar_graph
-from cellcolor.solvers.cpsat import CpSatSolver
+from cellcolor.lab.families.registry import SMALL
+from cellcolor.solvers.cpsat import CompleteModel, CompleteModelSolver, CpSatSolver
 from cellcolor.solvers.dfs import CoverReferenceSolver, ReferenceSolver
 from cellcolor.solvers.interface import Options, Solver
 
-pytestmark = pytest.mark.second
-
 PAPERS, COVERED = ReferenceSolver(), CoverReferenceSolver()
-WITH_STRANDS: tuple[Solver, ...] = (COVERED, CpSatSolver(), CpSatSolver(plans=False))
-"""Those that finish where cells have several loops or edges have several strands."""
+WITH_STRANDS: tuple[Solver, ...] = (COVERED, CpSatSolver(), CompleteModelSolver())
+"""Those that finish where cells have several loops, or edges several strands, and on scenes."""
 SOLVERS: tuple[Solver, ...] = (PAPERS, *WITH_STRANDS)
-LISTING = SOLVERS[:3]  # plans have no part in the schemes that CP-SAT lists
+LISTING = (PAPERS, COVERED, CpSatSolver())
 KNOWN = sorted(p for p in PAPER.glob("*.json") if not p.name.endswith(".surface.json"))
 DRAWN = sorted(PAPER.glob("*.surface.json"))
 
@@ -94,7 +97,7 @@ def sample(
 
 def segments_of(solver: Solver, instance: Instance, options: Options) -> int:
     """The segments of a solver's answer, counted by the checker."""
-    answer = solver.minimize(instance, options)
+    answer = solver.minimize(instance, replace(options, workers=1))
     assert answer.division is not None
     report = check_division(instance, answer.division, answer.seams, options.strands)
     assert report.valid, (solver, report.problems)
@@ -175,6 +178,75 @@ def test_random_graphs(self_edges: bool, first: int) -> None:
                 compare(instance)
             except AssertionError as error:
                 raise AssertionError(f"{instance.name}: {error}") from error
+
+
+def drawn_graphs(family: str, seeds: range) -> Iterator[Instance]:
+    """Graphs of a family."""
+    for seed in seeds:
+        made = SMALL[family](seed)
+        yield made if isinstance(made, Instance) else decompose(made)
+
+
+@pytest.mark.parametrize("family", sorted(set(SMALL) - {"grids of hubs"}))
+def test_the_model_says_what_the_depth_first_search_says(family: str) -> None:
+    """300 graphs in all: discs, holes, cracks, several parts, hubs. The model is built for each.
+
+    One seed in three is solved without a hint.
+    """
+    compared = 0
+    for seed, instance in enumerate(drawn_graphs(family, range(300))):
+        if not instance.cells:
+            continue
+        reference = COVERED.minimize(instance, Options(deadline=Deadline.after(0.3)))
+        assert reference.division is not None
+        found = count_segments(reference.division)
+        if reference.lower_bound < found:
+            continue
+        if seed % 3:
+            answer = CompleteModelSolver().minimize(instance, Options(workers=1))
+            assert answer.model is not None and answer.model.constraints > 0
+            assert answer.lower_bound == found, instance.name
+            assert answer.division is not None
+            report = check_division(instance, answer.division, answer.seams)
+            assert report.valid and report.segments == found, instance.name
+        else:
+            built = CompleteModel(instance)
+            built.model.clear_hints()
+            solver = cp_model.CpSolver()
+            solver.parameters.num_workers = 1
+            assert solver.solve(built.model) == cp_model.OPTIMAL
+            assert round(solver.objective_value) == found, instance.name
+        compared += 1
+        if compared == 38:
+            return
+    raise AssertionError("too few graphs")
+
+
+SCENES = {
+    "half_pipe": 4,
+    "hemisphere_flat": None,
+    "hemisphere_tilted": None,
+    "square": 2,
+    "wok": 16,
+    "wok_obstacle": 64,
+}
+"""The paper's experiments, and how many optimal schemes each has; None where that is not known."""
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_papers_experiments(name: str) -> None:
+    """Minima by all three; schemes as sets where the depth-first search lists all of them."""
+    instance = Instance.read(INSTANCES / "scenes" / f"{name}.json")
+    found = [segments_of(solver, instance, Options()) for solver in WITH_STRANDS]
+    assert len(set(found)) == 1
+    if (count := SCENES[name]) is not None:
+        listed = CpSatSolver().optimal_schemes(instance, Options(), found[0])
+        next(listed)
+        assert listed.count == count
+        if count <= 100:
+            counted = schemes_of(CpSatSolver(), instance, found[0])
+            assert len(counted) == count
+            assert counted == schemes_of(COVERED, instance, found[0])
 
 
 @pytest.mark.parametrize("chunk", first_is_fast(range(2)))

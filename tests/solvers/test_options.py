@@ -10,15 +10,12 @@ import numpy as np
 import pytest
 from library import PAPER
 from meshes import drawn
-from ortools.sat.python import cp_model
 
 import cellcolor
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline
-from cellcolor.errors import CellcolorError, InputError, RefusedResult
+from cellcolor.errors import InputError, RefusedResult
 from cellcolor.solvers.checked import enumerate_schemes, solve
-from cellcolor.solvers.cpsat import CpSatSolver
-from cellcolor.solvers.cpsat.schemes import frontier
 from cellcolor.solvers.interface import STRANDS, Options
 from cellcolor.solvers.registry import make_solver
 
@@ -44,7 +41,6 @@ CORRIDORS = Instance.read(PAPER / "parallel-corridors.json")
         ({"seed": 2**31}, "seed", "less than or equal to 2147483647"),
         ({"seed": None}, "seed", "valid integer"),
         ({"deadline": 10.0}, "deadline", "Deadline"),
-        ({"fewest_cuts": 1}, "fewest_cuts", "valid boolean"),
         ({"start": "solution.json"}, "start", "Start"),
     ],
 )
@@ -81,43 +77,15 @@ def test_the_oracle_refuses_before_it_searches(options: dict[str, int]) -> None:
     assert refusal.value.field == next(iter(options))
 
 
-@pytest.mark.parametrize("options", [Options(fewest_cuts=True), Options("surface", 2)])
-def test_what_a_solver_cannot_do_is_not_done_silently(options: Options) -> None:
-    if options.fewest_cuts:
-        with pytest.raises(InputError, match="fewest_cuts: is more than the solver dfs can do"):
-            solve(RING, options, "dfs")
-    else:
-        for solver in ("cp-sat", "dfs"):
-            with pytest.raises(InputError, match="search_space"):
-                list(make_solver(solver).optimal_schemes(CORRIDORS, options, 2))
+def test_what_a_solver_cannot_do_is_not_done_silently() -> None:
+    for solver in ("cp-sat", "dfs"):
+        with pytest.raises(InputError, match="search_space"):
+            list(make_solver(solver).optimal_schemes(CORRIDORS, Options("surface", 2), 2))
 
 
-class TestStatusesOfTheSchemes:
-    """What ends an enumeration, other than that all schemes have been found."""
-
-    def end_with(self, monkeypatch: pytest.MonkeyPatch, outcome: Any) -> None:
-        def end(*_: object) -> cp_model.CpSolverStatus:
-            if isinstance(outcome, Exception):
-                raise outcome
-            return outcome
-
-        monkeypatch.setattr(frontier, "MOST_STEPS", -1)  # CP-SAT lists the schemes
-        monkeypatch.setattr(cp_model.CpSolver, "solve", end)
-
-    def test_a_model_that_is_none(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.end_with(monkeypatch, cp_model.MODEL_INVALID)
-        with pytest.raises(CellcolorError, match="not valid"):
-            list(CpSatSolver().optimal_schemes(RING, Options(), 2))
-
-    def test_a_search_that_breaks_down(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.end_with(monkeypatch, MemoryError("no memory"))
-        with pytest.raises(MemoryError):
-            list(CpSatSolver().optimal_schemes(RING, Options(), 2))
-
-    def test_none_at_all_contradicts_the_minimum(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.end_with(monkeypatch, cp_model.INFEASIBLE)
-        with pytest.raises(RefusedResult, match="no scheme with 2 segments"):
-            list(enumerate_schemes(RING, Options(), "cp-sat", 2))
+def test_no_scheme_at_all_contradicts_the_minimum() -> None:
+    with pytest.raises(RefusedResult, match="no scheme with 1 segments"):
+        list(enumerate_schemes(RING, Options(), "cp-sat", 1))
 
 
 @pytest.mark.parametrize("solver", ["cp-sat", "dfs"])

@@ -170,11 +170,24 @@ def test_files_of_ours_only_are_overwritten(tmp_path: Path) -> None:
 
 def test_the_ending_says_the_format(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("export", FIGURES[0], "-o", tmp_path / "a.txt") == 2
-    assert "not end in any of .opb, .wcnf, .mps, .dzn, .lp" in capsys.readouterr().err
+    assert "not end in any of .pbtxt, .pb, .opb, .wcnf, .mps, .dzn, .lp" in capsys.readouterr().err
     assert run("export", FIGURES[0], "-o", tmp_path / "a.txt", "--format", "opb") == 0
 
 
 # --- solvers really run on the files -------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["annulus", "split-cell"])
+def test_the_complete_model_is_solved_from_its_file(name: str, tmp_path: Path) -> None:
+    target = tmp_path / "model.pbtxt"
+    assert run("export", PAPER / f"{name}.json", "-o", target) == 0
+    model = cp_model.CpModel()
+    model.proto.parse_text_format(target.read_text())
+    solver = cp_model.CpSolver()
+    assert solver.solve(model) == cp_model.OPTIMAL
+    known = Instance.read(PAPER / f"{name}.json").known
+    assert known is not None and known.paper is not None
+    assert round(solver.objective_value) == known.paper.segments
 
 
 def highs(file: Path) -> str:

@@ -13,7 +13,6 @@ from guides import install
 from library import PAPER
 
 from cellcolor.data.instance import Instance
-from cellcolor.data.objective import Objective
 from cellcolor.errors import InputError, SolverMissing
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options, SchemeSolver, Start
@@ -87,22 +86,6 @@ class TestAbilities:
         with pytest.raises(InputError, match=f"start: is more than the solver {name} can do"):
             self.found(name, options)
 
-    def test_fewest_cuts(self, name: str) -> None:
-        options = Options(fewest_cuts=True)
-        if make_solver(name).abilities.fewest_cuts:
-            assert solve(INSTANCE, options, name).cutting_paths_lower_bound == 0
-            return
-        with pytest.raises(InputError, match=f"fewest_cuts: is more than the solver {name} can do"):
-            self.found(name, options)
-
-    def test_objective(self, name: str) -> None:
-        options = Options(objective=Objective({INSTANCE.colors[0]: 2}))
-        if make_solver(name).abilities.objective:
-            assert solve(INSTANCE, options, name).status == "optimal"
-            return
-        with pytest.raises(InputError, match=f"objective: is more than the solver {name} can do"):
-            self.found(name, options)
-
     def test_optimal_schemes(self, name: str) -> None:
         known = INSTANCE.known
         assert known is not None and known.paper is not None
@@ -128,8 +111,7 @@ class TestAbilities:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--solver", "nobody"], "'nobody' is not one of cp-sat, cp-sat-model, cp-sat-pointers"),
-        (["--solver", "dfs", "--fewest-cuts"], "fewest_cuts: is more than the solver dfs"),
+        (["--solver", "nobody"], "'nobody' is not one of cp-sat, cp-sat-model, dfs"),
         (["--solver", "dfs", "--warm-start", RING], "start: is more than the solver dfs"),
         (["--solver", "clingo", "--all"], "schemes: is more than the solver clingo"),
         (["--solver", "clingo", "--search-space", "surface"], "search_space: is surface"),

@@ -20,7 +20,8 @@ from examples import examples
 
 RIVALS = (
     pytest.param("clingo", marks=pytest.mark.second),
-    *("highs", "maxsat", "cp-sat-pointers", "cp-sat-ranks", "cp-sat-contour"),
+    "highs",
+    "maxsat",
 )
 
 

@@ -1,4 +1,4 @@
-"""Pairs of segments that would have to cross, read off the partings of two color regions."""
+"""Pairs of segments that would have to cross, read off what two color regions separate."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ def conflicts(instance: Instance, first: Region, second: Region) -> list[Conflic
     pair = RegionPair(instance, first, second)
     for side in (pair.first, pair.second):
         for near, far in combinations(side.merged_cells, 2):
-            for parting in side.partings(near, far):
-                for group, further in combinations(parting.groups, 2):
+            for separation in side.separations(near, far):
+                for group, further in combinations(separation.groups, 2):
                     for merged_cells in product(group, further):
-                        sides = (parting.ends, merged_cells)
+                        sides = (separation.ends, merged_cells)
                         conflict = Conflict(*(sides if side is pair.first else sides[::-1]))
                         found[frozenset(map(frozenset, sides))] = conflict
     return list(found.values())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cellcolor.data.instance import Instance
-from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, seams_of
+from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph, seams_of
 
 
 def graph_of(instance: Instance, strands: int = 1) -> DartGraph:

@@ -44,7 +44,7 @@ INSTANCE: Document = {
 
 SOLUTION: Document = {
     "format": "cellcolor/solution",
-    "version": 2,
+    "version": 3,
     "instance": {"name": "pair", "sha256": "0" * 64},
     "search_space": "surface",
     "strands": 2,
@@ -58,6 +58,7 @@ SOLUTION: Document = {
     "bounds": [
         {"kind": "cover", "value": 1, "holds_for": "surface", "certificate": {"regions": []}}
     ],
+    "model": {"variables": 40, "constraints": 90},
     "coverage": {"area_m2": 2.0, "unreachable": 0.25, "given_up": 0.125},
     "notes": ["The model was too large to be built."],
     "seams": [{"id": 5, "cell": 1, "from": 3, "to": -4, "strands": 2}],

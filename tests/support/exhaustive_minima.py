@@ -84,12 +84,8 @@ def live_darts(instance: Instance, cell: Cell) -> list[int]:
 # --- every division, literally ------------------------------------------------------------------
 
 
-def literal_minimum(instance: Instance, costs: Sequence[int] | None = None) -> int:
-    """The minimum over the product of all partitions and all colorings: for tiny graphs only.
-
-    With costs by color it is the least that segments cost together.
-    """
-    price = [1] * len(instance.colors) if costs is None else costs
+def literal_minimum(instance: Instance) -> int:
+    """The minimum over the product of all partitions and all colorings: for tiny graphs only."""
     options = []
     for cell in instance.cells:
         darts = live_darts(instance, cell)
@@ -102,13 +98,13 @@ def literal_minimum(instance: Instance, costs: Sequence[int] | None = None) -> i
                     for number, block in enumerate(blocks)
                     for i in block
                 }
-                found.append((sum(price[color] for color in colors), holder))
+                found.append((len(blocks), holder))
         options.append(found)
-    best = len(instance.cells) * 1000 * max(price)
+    best = len(instance.cells) * 1000
     for chosen in itertools.product(*options):
         holder = {dart: where for _, painted in chosen for dart, where in painted.items()}
         joins = [
-            (one[:2], holder[-dart][:2], price[one[2]])
+            (one[:2], holder[-dart][:2])
             for dart, one in holder.items()
             if dart > 0 and one[2] == holder[-dart][2] and one[2] in instance.joinable(dart)
         ]
@@ -116,14 +112,14 @@ def literal_minimum(instance: Instance, costs: Sequence[int] | None = None) -> i
     return best
 
 
-def _forest(joins: list[tuple[tuple[int, int], tuple[int, int], int]]) -> int:
-    """The edges of a maximal forest, each counted as what it saves."""
+def _forest(joins: list[tuple[tuple[int, int], tuple[int, int]]]) -> int:
+    """The number of edges of a maximal forest."""
     group: dict[tuple[int, int], set[tuple[int, int]]] = {}
     size = 0
-    for a, b, saved in joins:
+    for a, b in joins:
         ga, gb = group.setdefault(a, {a}), group.setdefault(b, {b})
         if ga is not gb:
-            size += saved
+            size += 1
             ga |= gb
             for member in gb:
                 group[member] = ga

@@ -1,8 +1,7 @@
 """Certificates of true bounds, forged in one place.
 
 A forged claim on a large instance is one segment more than a division that exists, so it is false.
-On a small mesh it may be true as well: ``forged_truth`` asks all colorings of its vertices. Of a
-tangle, where there is none, one is made up first.
+On a small mesh it may be true as well: ``forged_truth`` asks all colorings of its vertices.
 """
 
 from __future__ import annotations
@@ -16,7 +15,6 @@ from typing import Any
 
 from library import INSTANCES
 from meshes import drawn
-from rooms import ISLAND_BETWEEN, ROUND_A_PETAL
 
 import cellcolor
 from cellcolor.data.bounds import Bound
@@ -31,118 +29,6 @@ from cellcolor.solvers.interface import Options
 Certificate = dict[str, Any]
 
 
-def _tangle_of(chance: random.Random, original: Original, forged: Certificate) -> list[Any]:
-    """The segments of a tangle of the certificate, or of one that is made up and put there."""
-    part = chance.choice(forged["parts"])
-    if not part.get("tangles") or chance.random() < 0.2:
-        made = [_tangled_segment(chance, original) for _ in range(chance.randint(1, 3))]
-        part.setdefault("tangles", []).append({"segments": made})
-        part.pop("hubs", None)
-        return made
-    return chance.choice(part["tangles"])["segments"]
-
-
-def _tangled_segment(chance: random.Random, original: Original) -> dict[str, Any]:
-    """A segment of a made-up tangle, from two cells of a color or more, some of them avoided."""
-    color = chance.randrange(len(original.instance.colors))
-    own = [cell.id for cell in original.instance.cells if color in cell.colors] or [0]
-    cells = chance.sample(own, min(len(own), chance.randint(2, 4)))
-    return {"color": color, "groups": [[[c]] for c in cells[:2]], "avoided": cells[2:]}
-
-
-def _wrong_color_in_tangle(chance: random.Random, original: Original, forged: Certificate) -> int:
-    """A segment of a tangle has another color."""
-    segment = chance.choice(_tangle_of(chance, original, forged))
-    segment["color"] = chance.randrange(-1, len(original.instance.colors) + 1)
-    return 0
-
-
-def _dropped_segment(chance: random.Random, original: Original, forged: Certificate) -> int:
-    """A segment of a tangle is missing."""
-    segments = _tangle_of(chance, original, forged)
-    segments.pop(chance.randrange(len(segments)))
-    return 0
-
-
-def _changed_group(chance: random.Random, original: Original, forged: Certificate) -> int:
-    """A segment of a tangle touches an area more, another one, a larger one, or a group less."""
-    segment = chance.choice(_tangle_of(chance, original, forged))
-    group = chance.choice(segment["groups"])
-    own = [c.id for c in original.instance.cells if segment["color"] in c.colors] or [0]
-    match chance.randrange(4):
-        case 0:
-            group.append([chance.choice(own)])
-        case 1:
-            group[chance.randrange(len(group))] = [chance.choice(own)]
-        case 2:
-            chance.choice(group).append(chance.choice(own))
-        case _:
-            segment["groups"].remove(group)
-    return 0
-
-
-def _changed_avoided(chance: random.Random, original: Original, forged: Certificate) -> int:
-    """A segment of a tangle avoids a cell less, or one more."""
-    segments = _tangle_of(chance, original, forged)
-    segment = chance.choice([own for own in segments if own["avoided"]] or segments)
-    if segment["avoided"] and chance.random() < 0.7:
-        segment["avoided"].pop(chance.randrange(len(segment["avoided"])))
-    else:
-        own = [c.id for c in original.instance.cells if segment["color"] in c.colors] or [0]
-        segment["avoided"].append(chance.choice(own))
-    return 0
-
-
-def _another_region(chance: random.Random, original: Original, forged: Certificate) -> int:
-    """A tangle names a cell that does not lie in the segment's color region, or anywhere."""
-    segment = chance.choice(_tangle_of(chance, original, forged))
-    cells = chance.choice([*(a for group in segment["groups"] for a in group), segment["avoided"]])
-    others = [c.id for c in original.instance.cells if segment["color"] not in c.colors]
-    cells.append(chance.choice([*others, len(original.instance.cells)]))
-    return 0
-
-
-def _empty_tangle(chance: random.Random, original: Original, forged: Certificate) -> int:
-    """A tangle without segments, groups, areas or cells."""
-    segments = _tangle_of(chance, original, forged)
-    groups = chance.choice(segments)["groups"]
-    chance.choice([segments, groups, chance.choice(groups), chance.choice(groups)[0]]).clear()
-    return 0
-
-
-def _no_tangle(chance: random.Random, original: Original, forged: Certificate) -> int:
-    """A tangle of made-up segments, beside the others."""
-    made = [_tangled_segment(chance, original) for _ in range(chance.randint(1, 3))]
-    part = chance.choice(forged["parts"])
-    part.setdefault("tangles", []).append({"segments": made})
-    part.pop("hubs", None)
-    return 0
-
-
-def _long_tangle(chance: random.Random, original: Original, forged: Certificate) -> int:
-    """A tangle with thousands of segments, groups, areas or avoided cells."""
-    segments = _tangle_of(chance, original, forged)
-    segment = chance.choice(segments)
-    listed = [segments, segment["groups"], segment["groups"][0], segment["avoided"]]
-    longer = chance.choice(listed)
-    longer.extend(copy.deepcopy(longer[:2]) * 2_000)
-    chance.choice(forged["parts"])["value"] += 1
-    return 1
-
-
-FORGERIES_OF_TANGLES: dict[str, Callable[[random.Random, Original, Certificate], int]] = {
-    "a wrong color in a tangle": _wrong_color_in_tangle,
-    "a segment of a tangle dropped": _dropped_segment,
-    "a changed group of a tangle": _changed_group,
-    "a cell avoided less or more": _changed_avoided,
-    "a tangle in another region": _another_region,
-    "an empty tangle": _empty_tangle,
-    "a tangle that is none": _no_tangle,
-    "a long tangle": _long_tangle,
-}
-"""Each changes a certificate and says how many segments more the bound claims."""
-
-
 MOST_COLORINGS = 2_000
 SECONDS = 5
 SHAPES: tuple[tuple[str, dict[str, list[int]]], ...] = (
@@ -154,7 +40,6 @@ SHAPES: tuple[tuple[str, dict[str, list[int]]], ...] = (
 LARGE_FILES = (
     "paper/annulus.json",
     "paper/figeasycell4.json",
-    "random/hub_24.json",
     "parts/machined-part.json",
 )
 
@@ -190,9 +75,7 @@ def small(seed: int) -> Iterator[Original]:
 
 
 def large() -> Iterator[Original]:
-    """The bounds of rooms, stored instances, scenes, blobs, tori and thin bands, one by one."""
-    yield from _originals("an island between", ISLAND_BETWEEN)
-    yield from _originals("round a petal", ROUND_A_PETAL)
+    """The bounds of stored instances, scenes, blobs, tori and thin bands, one by one."""
     for name in LARGE_FILES:
         yield from _originals(name, Instance.read(INSTANCES / name))
     for file in sorted((INSTANCES / "scenes" / "feasibility").glob("*.surface.json")):
@@ -205,8 +88,6 @@ def large() -> Iterator[Original]:
     for seed in (5, 22):
         thin = cellcolor.decompose(blobs(seed, size=20, thin=True))
         yield from _originals(f"thin bands {seed}", thin)
-    thin = MEDIUM["thin"](11)
-    yield from _originals("thin bands with tangles", _graph(thin))
     yield from _originals("rim 1", cellcolor.decompose(MEDIUM["rim"](1)))
 
 
@@ -233,8 +114,9 @@ def _originals(
             continue
         if bound.kind == "cover":
             part = {"value": bound.value, "cells": certificate["cells"], "conflicts": []}
-            certificate = {"left_out": [], "parts": [part]}
-        proved = Bound("conflicts", bound.value, "surface", json.loads(json.dumps(certificate)))
+            certificate = {"parts": [part]}
+        certificate = {"left_out": [], **json.loads(json.dumps(certificate))}
+        proved = Bound("conflicts", bound.value, "surface", certificate)
         yield Original(name, instance, proved, surface)
 
 
@@ -280,7 +162,6 @@ def _not_minimal(_: random.Random, original: Original, forged: Certificate) -> i
             "value": original.bound.value + 1,
             "cells": [cell.id for cell in original.instance.cells],
             "conflicts": [c for part in forged["parts"] for c in part["conflicts"]],
-            "tangles": [t for part in forged["parts"] for t in part.get("tangles", ())],
         }
     ]
     return 1
@@ -298,17 +179,6 @@ def _left_out_wrongly(chance: random.Random, original: Original, forged: Certifi
     cell = chance.choice(original.instance.cells)
     step = [chance.choice(cell.colors), cell.id, chance.randrange(len(original.instance.colors))]
     forged["left_out"] = [*forged["left_out"], step]
-    return 0
-
-
-def _wrong_hub(chance: random.Random, original: Original, forged: Certificate) -> int:
-    """Another cell is said to be a hub."""
-    part = chance.choice(forged["parts"])
-    hub = chance.randrange(len(original.instance.cells))
-    part["cells"] = [cell for cell in part["cells"] if cell != hub]
-    part["conflicts"] = []
-    part.pop("tangles", None)
-    part["hubs"] = [*part.get("hubs", ())[1:], hub]
     return 0
 
 
@@ -362,12 +232,10 @@ def _wrong_id(chance: random.Random, original: Original, forged: Certificate) ->
 
 
 def _duplicates(chance: random.Random, _: Original, forged: Certificate) -> int:
-    """A part twice, or its cells, conflicts and hubs as hubs of another one."""
+    """A part twice, or its cells and conflicts twice in another one."""
     part = copy.deepcopy(chance.choice(forged["parts"]))
-    kind = chance.randrange(3)
+    kind = chance.randrange(2)
     if kind == 1:
-        part["hubs"] = [*part["cells"], *part["cells"]]
-    elif kind == 2:
         part["cells"] = part["cells"] * 2
         part["conflicts"] = part["conflicts"] * 2
     forged["parts"].append(part)
@@ -393,14 +261,12 @@ FORGERIES: dict[str, Callable[[random.Random, Original, Certificate], int]] = {
     "a cover that is not minimal": _not_minimal,
     "a wrong number": _wrong_number,
     "a color left out wrongly": _left_out_wrongly,
-    "a wrong hub": _wrong_hub,
     "a long list": _long_list,
     "a part for every cell": _many_parts,
     "a wrong type": _wrong_type,
     "a wrong member": _wrong_member,
     "a cell that is not there": _wrong_id,
     "something twice": _duplicates,
-    **FORGERIES_OF_TANGLES,
 }
 """Each changes a certificate and says how many segments more the bound claims."""
 

@@ -66,16 +66,11 @@ def claims_truth(original: Original, forged: Bound) -> bool:
     cells = {cell for part in certificate["parts"] for cell in part["cells"]}
     if cells - {cell.id for cell in original.instance.cells}:
         return False
-    if any(part.get("hubs") for part in certificate["parts"]):
-        cells = {cell.id for cell in original.instance.cells}  # hubs count for what they save
     conflicts = [conflict for part in certificate["parts"] for conflict in part["conflicts"]]
-    tangles = [tangle for part in certificate["parts"] for tangle in part.get("tangles", ())]
     for segments in colorings:
         if sum(not cells.isdisjoint(s.cells) for s in segments) < forged.value:
             return False
         if any(_both_connected(segments, conflict) for conflict in conflicts):
-            return False
-        if any(_all_drawn(segments, tangle["segments"]) for tangle in tangles):
             return False
     return True
 
@@ -111,20 +106,3 @@ def _both_connected(segments: Sequence[_Segment], conflict: dict[str, Any]) -> b
         for color, areas in ends
     ]
     return any(one != other for one, other in itertools.product(*connecting))
-
-
-def _all_drawn(segments: Sequence[_Segment], tangle: Sequence[dict[str, Any]]) -> bool:
-    """Whether a coloring has all segments of a tangle, each a different one."""
-    fitting = [
-        [
-            number
-            for number, segment in enumerate(segments)
-            if segment.color == own["color"]
-            and segment.cells.isdisjoint(own["avoided"])
-            and all(
-                any(not segment.cells.isdisjoint(area) for area in group) for group in own["groups"]
-            )
-        ]
-        for own in tangle
-    ]
-    return any(len(set(chosen)) == len(chosen) for chosen in itertools.product(*fitting))

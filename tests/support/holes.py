@@ -140,21 +140,6 @@ def paths(loops: Loops, blocks: Blocks) -> int:
     return int(best) if loops else 0
 
 
-def fewest(instance: Instance) -> tuple[int, int]:
-    """The fewest segments, and the fewest cutting paths of the divisions with so many."""
-    best = (len(instance.cells) * 100, 0)
-    loops = [live_loops(instance, cell) for cell in instance.cells]
-    for division in divisions(instance):
-        count = segments(division)
-        if count <= best[0]:
-            cuts = sum(
-                paths(own, frozenset(block for _, block in cell))
-                for own, cell in zip(loops, division, strict=True)
-            )
-            best = min(best, (count, cuts))
-    return best
-
-
 def optimal_schemes(instance: Instance) -> tuple[int, set[SchemeKey]]:
     """The fewest segments of any division, and the schemes among those that have so many."""
     best = len(instance.cells) * 100

@@ -11,13 +11,8 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from concurrent.futures import Future
 from pathlib import Path
-from types import TracebackType
 from typing import Any
-
-from cellcolor.lab.workers import Task, Workers
-from cellcolor.processes import Ended
 
 _CHILD = "import os, sys, time; open(sys.argv[1], 'a').write(f'{os.getpid()}\\n'); time.sleep(600)"
 
@@ -110,24 +105,3 @@ def _wait(until: Callable[[], bool]) -> None:
     while not until():
         assert time.monotonic() < given_up
         time.sleep(0.01)
-
-
-class HereWorkers(Workers):
-    """One piece of work at a time, done when it is handed in."""
-
-    @property
-    def slots(self) -> int:
-        return 1
-
-    def submit(self, task: Task, /) -> Future[Ended]:
-        future: Future[Ended] = Future()
-        future.set_result(Ended("done", task.function(*task.arguments)))
-        return future
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        pass

@@ -1,25 +1,19 @@
-"""Rooms that segments cross in pieces of one color, on graphs and meshes, and whether they can.
+"""Hubs with petals, and rings that cross; and whether two segments can pass each other on a mesh.
 
-Hubs with petals: a cell of all colors, and cells of one color or more all round it.
+A hub is a cell of all colors; its petals are cells of one color or more all round it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import chain, count
 
 import networkx as nx
 from hypothesis import strategies as st
-from meshes import grid_faces, grid_points, surface
-from ortools.sat.python import cp_model
 
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.deadline import NEVER, Deadline
 from cellcolor.lab.families.meshes import make_mesh
-from cellcolor.solvers.bounds.cover import color_regions, set_cover
-from cellcolor.solvers.cpsat.routes.segment_plans import Planner
 
 RED, BLUE, GREEN = 0, 1, 2
 
@@ -54,85 +48,40 @@ def petal_cells(*colors: int | Sequence[int]) -> list[Sequence[Sequence[int]]]:
     ]
 
 
-def room(*loops: Sequence[int | tuple[int, ...]]) -> Instance:
-    """A cell of all colors with petals round its loops, numbered from 1 as they come."""
-    numbers = count(1)
-    own = [[next(numbers) for _ in loop] for loop in loops]
-    return graph(((RED, BLUE, GREEN), *own), *petal_cells(*chain(*loops)))
-
-
-ISLAND_BETWEEN = room((RED, BLUE, RED, GREEN), (BLUE, GREEN))
-"""Red, from left to right, passes the island above, where blue comes from, or below, as green."""
-
-
-ROUND_A_PETAL = room((GREEN, RED, (BLUE, GREEN), RED, GREEN, (RED, BLUE)))
-"""Blue passes from petal 3 to petal 6 only if red, from petal 2 to 4, goes round petal 6."""
-
-
-@st.composite
-def rooms(draw: st.DrawFn, width: int, height: int) -> LabelledSurface:
-    """A frame in pieces of one color, and an island of two around which segments may pass."""
-    several = st.sampled_from([(RED, BLUE, GREEN)] * 8 + [(RED, BLUE), (RED, GREEN)])
-    rim = [(0, column) for column in range(width)]
-    rim += [(row, width - 1) for row in range(1, height)]
-    rim += [(height - 1, column) for column in reversed(range(width - 1))]
-    rim += [(row, 0) for row in reversed(range(1, height - 1))]
-    pieces: list[tuple[int, ...]] = draw(st.permutations([(RED,), (RED,), (BLUE,), (GREEN,)]))
-    further = st.sampled_from([(RED,), (BLUE,), (GREEN,), (RED, BLUE), (BLUE, GREEN)])
-    pieces += draw(st.lists(further, max_size=3))
-    labels: dict[tuple[int, int], Sequence[int]] = {
-        place: pieces[number * len(pieces) // len(rim)] for number, place in enumerate(rim)
-    }
-    halves = draw(several), draw(several)
-    for row in range(1, height - 1):
-        for column in range(1, width - 1):
-            labels[row, column] = halves[2 * row > height]
-    row, column = draw(st.integers(2, height - 4)), draw(st.integers(2, width - 3))
-    upper, lower = draw(st.sampled_from([(BLUE, GREEN), (GREEN, BLUE), (RED, BLUE)]))
-    labels[row, column], labels[row + 1, column] = (upper,), (lower,)
-    return surface(
-        grid_points(width, height),
-        grid_faces(width, height),
-        [labels[row, column] for row in range(height) for column in range(width)],
-    )
-
-
-def can_be_drawn(
-    mesh: LabelledSurface, segments: Sequence[tuple[int, list[set[int]], set[int]]]
+def can_pass(
+    mesh: LabelledSurface, colors: tuple[int, int], one: list[set[int]], other: list[set[int]]
 ) -> bool:
-    """Whether disjoint sets of mesh vertices exist, each connected in its color from a first set of
-    vertices to a second without some others: every path without shortcuts is tried for all but the
-    last."""
-    mesh_graph: nx.Graph[int] = nx.Graph(mesh.left_of.keys())
-    graphs = [
-        mesh_graph.subgraph(
-            v for v, own in enumerate(mesh.vertex_colors) if color in own and v not in avoided
+    """Whether two disjoint sets of mesh vertices exist, connected in the one and the other color,
+    that each touch two sets of vertices: every path without shortcuts is tried for the first."""
+    graphs = []
+    for color in colors:
+        graph: nx.Graph[int] = nx.Graph()
+        graph.add_nodes_from(v for v, own in enumerate(mesh.vertex_colors) if color in own)
+        cracked = {(c.i, c.j) for c in mesh.cracks if color in c.colors}
+        graph.add_edges_from(
+            (i, j)
+            for i, j in mesh.left_of
+            if i in graph and j in graph and (min(i, j), max(i, j)) not in cracked
         )
-        for color, _, avoided in segments
-    ]
+        graphs.append(graph)
+    first, second = graphs
 
-    def fits(number: int, used: set[int]) -> bool:
-        if any(
-            not any(
-                not part.isdisjoint(ends[0]) and not part.isdisjoint(ends[1])
-                for part in nx.connected_components(graph.subgraph(graph.nodes - used))
-            )
-            for graph, (_, ends, _) in list(zip(graphs, segments, strict=True))[number:]
-        ):
+    def others_meet(path: list[int]) -> bool:
+        rest = second.subgraph(second.nodes - set(path))
+        return any(
+            not part.isdisjoint(other[0]) and not part.isdisjoint(other[1])
+            for part in nx.connected_components(rest)
+        )
+
+    def extend(path: list[int]) -> bool:
+        if not others_meet(path):
             return False
-        if number == len(segments) - 1:
+        if path[-1] in one[1]:
             return True
-        graph, (start, end) = graphs[number], segments[number][1]
+        near = set().union(*(first[v] for v in path[:-1])) | set(path)
+        return any(extend([*path, v]) for v in first[path[-1]] if v not in near)
 
-        def extend(path: list[int]) -> bool:
-            if path[-1] in end:
-                return fits(number + 1, used | set(path))
-            near = set().union(*(graph[v] for v in path[:-1])) | set(path) | used
-            return any(extend([*path, v]) for v in sorted(graph[path[-1]]) if v not in near)
-
-        return any(extend([v]) for v in sorted(start - used))
-
-    return fits(0, set())
+    return any(extend([start]) for start in sorted(one[0]))
 
 
 @st.composite
@@ -164,18 +113,3 @@ def hub(*colors: int | tuple[int, ...]) -> Instance:
 def four_colors_in_turn(petals: int) -> Instance:
     """A hub however large, made at once, since no minimum is worked out with it."""
     return hub(*(number % 4 for number in range(petals)))
-
-
-def planner_of(instance: Instance, deadline: Deadline = NEVER) -> Planner:
-    """Plans of an instance's segments, by one worker of CP-SAT each."""
-
-    def run(
-        model: cp_model.CpModel, seed: int
-    ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
-        solver = cp_model.CpSolver()
-        solver.parameters.num_workers = 1
-        solver.parameters.random_seed = seed
-        solver.parameters.max_time_in_seconds = deadline.left
-        return solver, solver.solve(model)
-
-    return Planner(instance, color_regions(instance), set_cover(instance).bound, run)

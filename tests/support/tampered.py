@@ -217,7 +217,7 @@ def _hash(solution: dict[str, Any], kept: Kept, random: Random) -> None:  # noqa
 
 
 def _version(solution: dict[str, Any], kept: Kept, random: Random) -> None:  # noqa: ARG001
-    solution["version"] = _one([1, 3, 0, "2", None, 2.0, True], random)
+    solution["version"] = _one([1, 4, 0, "3", None, 3.0, True], random)
 
 
 def _one(of: list[Any], random: Random) -> Any:

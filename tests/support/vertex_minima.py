@@ -8,6 +8,7 @@ from __future__ import annotations
 import itertools
 from collections import defaultdict
 from collections.abc import Collection, Sequence
+from math import inf
 
 from exhaustive_minima import with_fewer
 
@@ -74,13 +75,12 @@ def front_by_vertices(
     return with_fewer(best)
 
 
-def vertex_minimum(surface: LabelledSurface, costs: Sequence[int] | None = None) -> int:
+def vertex_minimum(surface: LabelledSurface, most_states: float = inf) -> int | None:
     """The fewest connected components of equal color over all colorings of a mesh's vertices.
 
-    With costs by color it is the least that such components cost together. Without the topological
-    graph: vertices one by one in their order, which should be one with a short frontier.
+    Without the topological graph: vertices one by one in their order, which should be one with a
+    short frontier. None if that takes more than ``most_states`` partial colorings at a time.
     """
-    price = [1] * len(surface.colors) if costs is None else costs
     cracks = {(c.i, c.j): c.colors for c in surface.cracks}
     neighbors: dict[int, set[int]] = defaultdict(set)
     for i, j in surface.left_of:
@@ -112,8 +112,10 @@ def vertex_minimum(surface: LabelledSurface, costs: Sequence[int] | None = None)
                 found = tuple(
                     (painted[p][0], names.setdefault(painted[p][1], len(names))) for p in kept
                 )
-                closed = sum(price[c] for c, s in set(painted) if s not in names)
+                closed = sum(s not in names for _, s in set(painted))
                 grown[found] = min(grown.get(found, cost + closed), cost + closed)
+        if len(grown) > most_states:
+            return None
         layer, frontier = grown, [painted_now[p] for p in kept]
     return min(layer.values())
 

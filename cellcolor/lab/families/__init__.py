@@ -1,7 +1,7 @@
 """Random instance families, made on demand: labelled surfaces, and graphs without a surface.
 
 All of them are functions of a seed and a few numbers; the same arguments give the same instance.
-``registry`` has those that need a seed only, by name, for campaigns and benchmarks.
+``registry`` has those that need a seed only, by name, for tests and benchmarks.
 """
 
 from cellcolor.lab.families.blobs import blobs as blobs

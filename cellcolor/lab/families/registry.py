@@ -218,7 +218,7 @@ SMALL: dict[str, Family] = {
     "cracks": partial(_bearable, _cracks),
     "islands, holes": partial(_bearable, _loops, several_loops=True),
 }
-"""What every solver can bear, a depth-first search among them: campaigns take them in turn."""
+"""What every solver can bear, a depth-first search among them."""
 
 MEDIUM: dict[str, Family] = {
     "blobs": blobs,

@@ -2,25 +2,12 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
-from pathlib import Path
 
 from pydantic import ConfigDict
 
-from cellcolor.processes import Ended, Limits, watch
-
-_LIMITS = Limits(120.0)
-
-START_UP: dict[str, tuple[str, ...]] = {
-    "python": ("-c", "pass"),
-    "import cellcolor": ("-c", "import cellcolor"),
-    "cellcolor --help": ("-m", "cellcolor", "--help"),
-    "cellcolor solve": ("-m", "cellcolor", "solve"),
-}
-"""What the start-up is measured with, as arguments of Python; ``solve`` gets a file."""
+from cellcolor.processes import Ended
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,12 +68,3 @@ def timing(
         date=datetime.now(UTC).isoformat(timespec="seconds"),
         command=command,
     )
-
-
-def start_up_timings(file: Path, repetitions: int, command: str) -> Iterator[Timing]:
-    """How long Python, ``import cellcolor`` and two commands take, in turn, ``solve`` on a file."""
-    for repetition in range(repetitions):
-        for subject, arguments in START_UP.items():
-            files = (str(file),) if arguments[-1] == "solve" else ()
-            ended = watch([sys.executable, *arguments, *files], _LIMITS)
-            yield timing(subject, "cellcolor", repetition, ended, command)

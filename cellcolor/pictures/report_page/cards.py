@@ -8,7 +8,7 @@ import numpy as np
 
 from cellcolor.data.bound_kinds import kind_of
 from cellcolor.data.bounds import Bound
-from cellcolor.data.solution import Solution, witness_in_words
+from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count, listed
 from cellcolor.pictures.report_page.answers import answer_card
@@ -139,23 +139,25 @@ def _proof(report: MotionReport) -> Card | None:
         return None
     segments = solution.segments or 0
     bounds = [b for b in solution.bounds or () if b.value == solution.surface_lower_bound]
-    surface_bounds = [b for b in bounds if (b.holds_for, b.of) == ("surface", "segments")]
+    surface_bounds = [b for b in bounds if b.holds_for == "surface"]
     if not solution.proved_for_surface:
         text = (
             f"It is not proved that fewer are impossible: {count(segments, 'segment')} were found, "
             f"any division has at least {solution.surface_lower_bound}."
         )
+        if solution.status == "optimal":
+            by = "" if solution.proved_by is None else f", by {solution.proved_by}"
+            text += f" They are proved to be the fewest in the search space paper{by}."
         return Card("Can there be fewer lift-offs?", (text,), _bound_rows(surface_bounds), False)
     if segments < 2:
         text = "The tool never has to lift off, so there cannot be fewer."
         return Card("Why not fewer lift-offs", (text,), (), True)
-    witness = witness_in_words(report.decomposition.instance, solution.witness)
-    because = witness or solution.reason
+    because = solution.why_not_fewer(report.decomposition.instance)
     paragraphs = [
         f"However the surface is divided, {count(segments, 'segment')} are needed"
         + (f": {because}." if because else "."),
     ]
-    if witness is not None:
+    if solution.witness:
         shown = "The button “Cells of the proof” shows them on the part."
         paragraphs.append(f"Each needs its own segment. {shown}")
     paragraphs.append(

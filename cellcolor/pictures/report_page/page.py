@@ -8,7 +8,6 @@ import math
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 
-from cellcolor.data.solution import witness_in_words
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
 from cellcolor.files.writing import MARKER
@@ -53,8 +52,7 @@ def _title(report: MotionReport) -> str:
 def _proof(report: MotionReport) -> str:
     if report.solution is None:
         return report.missing
-    witness = witness_in_words(report.decomposition.instance, report.solution.witness)
-    return _sentence(report.solution.in_words(witness))
+    return _sentence(report.solution.in_words(report.decomposition.instance))
 
 
 def _chart_note(trajectory: Trajectory | None) -> str:

@@ -26,7 +26,7 @@ for k of them, 2^k sums have to be examined."""
 
 
 @dataclass(frozen=True, slots=True)
-class Parting:
+class Separation:
     """What a segment of one color region does to those of another.
 
     A segment of one region that touches both merged cells ``ends`` divides merged cells of the
@@ -104,15 +104,15 @@ class Side:
         self._wall: list[list[int]] = []
         self._around: list[set[int]] = []
         self._tree: dict[int, tuple[int, int]] = {}
-        self._known: dict[tuple[int, int], list[Parting]] = {}
+        self._known: dict[tuple[int, int], list[Separation]] = {}
         if len(merged_cells) > 1 and len(parted) > 1:
             self._tree = spanning_tree(self._own, merged_cells[:1])
             self._around = self._circles()
             if len(self._around) <= MOST_CIRCLES:
                 self._wall = self._components(parted, other)
 
-    def partings(self, near: int, far: int) -> list[Parting]:
-        """The partings of the other region by a segment that touches two merged cells of its own.
+    def separations(self, near: int, far: int) -> list[Separation]:
+        """What a segment that touches two merged cells of its own separates of the other region.
 
         Each component of the wall (docs/bounds/conflicts.md) gives one, if the segment separates
         some of its merged cells.
@@ -120,10 +120,10 @@ class Side:
         if not self._wall or not {near, far} <= self._tree.keys():
             return []
         if (near, far) not in self._known:
-            self._known[near, far] = self._partings(near, far)
+            self._known[near, far] = self._separations(near, far)
         return self._known[near, far]
 
-    def _partings(self, near: int, far: int) -> list[Parting]:
+    def _separations(self, near: int, far: int) -> list[Separation]:
         curves = [self._path(near) ^ self._path(far), *self._around]
         turns = self._turns(curves)
         cells = self._surface.cells
@@ -139,7 +139,7 @@ class Side:
                     together.union(merged_cell, first.setdefault(root, merged_cell))
             if len(groups := together.sets()) > 1:
                 found.append(
-                    Parting(
+                    Separation(
                         (cells[near], cells[far]),
                         tuple(tuple(cells[m] for m in sorted(group)) for group in groups),
                     )

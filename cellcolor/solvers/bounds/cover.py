@@ -83,7 +83,6 @@ def set_cover(
     instance: Instance,
     colors: Sequence[frozenset[int]] | None = None,
     deadline: Deadline = NEVER,
-    costs: Sequence[int] | None = None,
 ) -> Cover:
     """A smallest set of color regions that touches every cell; its size is a lower bound.
 
@@ -92,28 +91,22 @@ def set_cover(
 
     Args:
         colors: the colors each cell may be painted in, if not all of its own.
-        costs: what a segment of each color costs; None for 1 each. With costs it is a cheapest set,
-            and what it costs is a lower bound of the cost of segments.
     """
     regions = color_regions(instance, colors)
     touching = _touching(regions, len(instance.cells))
     greedy = _greedy(regions, touching)
-    found = _smallest(touching, EFFORT, deadline, greedy, _prices(regions, costs))
+    found = _smallest(touching, EFFORT, deadline, greedy)
     numbers = greedy if found.chosen is None else found.chosen
     return Cover([regions[number] for number in sorted(numbers)], max(found.bound, bool(regions)))
 
 
-def _prices(regions: Sequence[Region], costs: Sequence[int] | None) -> list[int] | None:
-    """What a segment in each color region costs; None for 1 each."""
-    return None if costs is None else [costs[color] for color, _ in regions]
+def smallest_cover(regions: Sequence[Region], cells: int) -> int:
+    """What is proved of the fewest regions that together touch cells 0, 1, 2, …"""
+    touching = _touching(regions, cells)
+    return _smallest(touching, EFFORT, NEVER, _greedy(regions, touching)).bound
 
 
-def hard_cells(
-    instance: Instance,
-    value: int,
-    deadline: Deadline = NEVER,
-    costs: Sequence[int] | None = None,
-) -> list[int] | None:
+def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> list[int] | None:
     """A few cells that fewer than ``value`` color regions cannot touch: why no cover is smaller.
 
     If there are as many cells as ``value``, no two of them lie in one color region: they are
@@ -121,8 +114,7 @@ def hard_cells(
     has its own cells: repeatedly, a cell is added that a smallest cover of the others misses.
 
     Args:
-        value: how many color regions are needed, or fewer; what they cost, if they have costs.
-        costs: what a segment of each color costs, 1 or more; None for 1 each.
+        value: how many color regions are needed, or fewer.
 
     Returns:
         The cells, ascending; None if none were found in time.
@@ -130,14 +122,13 @@ def hard_cells(
     cells = greedy_strangers(instance)
     if len(cells) >= value:
         return sorted(cells)[:value]
-    regions = color_regions(instance)
-    touching, prices = _touching(regions, len(instance.cells)), _prices(regions, costs)
+    touching = _touching(color_regions(instance), len(instance.cells))
     found: list[int] = []
     for group in sorted(_groups(touching), key=len):
         if value > 0 and not deadline.over:
             demands = [touching[cell] for cell in group]
-            need = min(value, _smallest(demands, CERTIFICATE_EFFORT, deadline, (), prices).bound)
-            hard = _hard_cells_of(group, need, touching, deadline, prices)
+            need = min(value, _smallest(demands, CERTIFICATE_EFFORT, deadline).bound)
+            hard = _hard_cells_of(group, need, touching, deadline)
             if hard is None:
                 return None
             found += hard
@@ -146,11 +137,7 @@ def hard_cells(
 
 
 def _hard_cells_of(
-    group: Sequence[int],
-    value: int,
-    touching: Sequence[set[int]],
-    deadline: Deadline,
-    prices: Sequence[int] | None,
+    group: Sequence[int], value: int, touching: Sequence[set[int]], deadline: Deadline
 ) -> list[int] | None:
     """:func:`hard_cells` of cells that no color region connects with others."""
     cells = _apart(group, touching)
@@ -161,7 +148,7 @@ def _hard_cells_of(
     hardest_first = sorted(group, key=lambda cell: len(touching[cell]))
     while not deadline.over:
         demands = [touching[cell] for cell in cells]
-        found = _smallest(demands, CERTIFICATE_EFFORT, deadline, (), prices)
+        found = _smallest(demands, CERTIFICATE_EFFORT, deadline)
         if found.bound >= value:
             return cells
         missed = (c for c in hardest_first if touching[c].isdisjoint(found.chosen or ()))
@@ -231,12 +218,8 @@ def _smallest(
     effort: float,
     deadline: Deadline,
     hint: Collection[int] = (),
-    prices: Sequence[int] | None = None,
 ) -> _Found:
-    """A minimum hitting set: the fewest regions with at least one of each demand.
-
-    With prices of all regions they are the cheapest ones, and the bound is one of their sum.
-    """
+    """A minimum hitting set: the fewest regions with at least one of each demand."""
     from ortools.sat.python import cp_model  # slow to import, so only where it is used
 
     chosen: set[int] | None = set()
@@ -252,10 +235,7 @@ def _smallest(
             model.add_bool_or(literal[number] for number in different[place])
         for number in own if hint else ():
             model.add_hint(literal[number], number in hint)
-        if prices is None:
-            model.minimize(sum(literal.values()))
-        else:
-            model.minimize(sum(prices[number] * literal[number] for number in own))
+        model.minimize(sum(literal.values()))
         found = _solve(model, list(literal.values()), effort, deadline)
         bound += found.bound
         if chosen is None or found.chosen is None:

@@ -5,7 +5,7 @@ The polygons are glued along edges; curves on the surface are compared up to hom
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from cellcolor.data.instance import Instance
@@ -54,18 +54,10 @@ def merge_cells(instance: Instance, colors: Mapping[int, frozenset[int]]) -> Mer
         edge = instance.edge(edge_id)
         sides[edge_id] = edge.left, edge.right
         joinable[edge_id] = frozenset(instance.joinable(edge_id))
-    return merge_further(MergedCells(loops, sides, joinable, {}), colors, {})
+    return _merged(MergedCells(loops, sides, joinable, {}), colors)
 
 
-def merge_further(
-    merged: MergedCells, colors: Mapping[int, frozenset[int]], apart: Mapping[int, Hashable]
-) -> MergedCells:
-    """Merge what has been merged further, for the sake of fewer colors.
-
-    Args:
-        colors: of each cell that is looked at, the colors that matter.
-        apart: cells with different values here are not merged.
-    """
+def _merged(merged: MergedCells, colors: Mapping[int, frozenset[int]]) -> MergedCells:
     sides = merged.sides
     none = frozenset[int]()
     live: dict[int, frozenset[int]] = {}
@@ -88,8 +80,6 @@ def merge_further(
     for edge in sorted(live):
         left, right = sides[edge]
         if colors[left] != live[edge] or colors[right] != live[edge]:
-            continue
-        if apart.get(left) != apart.get(right):
             continue
         if names[left] == names[right] and not rings.same(edge, -edge):
             continue  # two loops of one cell: a handle, and without the edge it was not planar

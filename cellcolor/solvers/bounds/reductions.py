@@ -29,17 +29,14 @@ def drop_dominated(instance: Instance, dropped: Iterable[LeftOut]) -> tuple[froz
     return tuple(frozenset(colors) for colors in allowed)
 
 
-def left_out(
-    instance: Instance, deadline: Deadline = NEVER, costs: Sequence[int] | None = None
-) -> list[LeftOut]:
+def left_out(instance: Instance, deadline: Deadline = NEVER) -> list[LeftOut]:
     """Dominated color regions (docs/semantics.md, section 6), in the order they are dropped.
 
     A region is dominated if some other color is available in each of its cells and joinable across
     each edge across which the region's own color is joinable: whatever is painted in the region's
-    color can be painted in the other. Where segments have costs by color, the other must not cost
-    more. Regions are dropped one at a time, because of two regions that dominate each other one has
-    to stay. This keeps the minimum of both search spaces, but not the set of optimal schemes. After
-    the deadline no more regions are dropped.
+    color can be painted in the other. Regions are dropped one at a time, because of two regions
+    that dominate each other one has to stay. This keeps the minimum of both search spaces, but not
+    the set of optimal schemes. After the deadline no more regions are dropped.
     """
     found: list[LeftOut] = []
     allowed = [set(cell.colors) for cell in instance.cells]
@@ -56,8 +53,6 @@ def left_out(
             if color in joinable[abs(dart)]
         }
         others = set.intersection(*(allowed[cell] for cell in cells)) - {color}
-        if costs is not None:
-            others = {other for other in others if costs[other] <= costs[color]}
         for edge in edges:
             if not others:
                 break

@@ -1,5 +1,8 @@
 """Minimum-segment coloring as a CP-SAT model, sub-cell cutting paths included."""
 
-from cellcolor.solvers.cpsat.solver import CpSatSolver, model_alone
+from ortools.sat.python.cp_model import CpSolver
 
-__all__ = ["CpSatSolver", "model_alone"]
+from cellcolor.solvers.cpsat.complete_model import CompleteModel, CompleteModelSolver
+from cellcolor.solvers.cpsat.solver import CpSatSolver
+
+__all__ = ["CompleteModel", "CompleteModelSolver", "CpSatSolver", "CpSolver"]

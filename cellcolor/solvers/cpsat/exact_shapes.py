@@ -19,10 +19,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from cellcolor.deadline import Deadline
-from cellcolor.solvers.bounds.hubs import MOST_ENTRIES, best_grouping, recursion_size
+from cellcolor.solvers.bounds.grouping import MOST_ENTRIES, best_grouping, recursion_size
+from cellcolor.solvers.cpsat.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.hub_ways import Areas, Ways, hub_ways
-from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
-from cellcolor.solvers.cpsat.model.painting import Block, Painting
+from cellcolor.solvers.cpsat.painting import Block, Painting
 from cellcolor.solvers.cpsat.parts import ConnectedPart
 from cellcolor.union_find import UnionFind
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
@@ -11,7 +10,12 @@ from cellcolor.data.solution import Seam
 from cellcolor.union_find import UnionFind
 
 Loops = tuple[tuple[tuple[int, ...], ...], ...]
-"""For each cell its loops with live darts, each as these darts (``Instance.live_loops``)."""
+"""For each cell its loops with live darts, each as these darts, the longest first."""
+
+
+def loops_of(instance: Instance) -> Loops:
+    """The loops of an instance with live darts. All seams of a cell leave from the longest one."""
+    return tuple(tuple(sorted(own, key=len, reverse=True)) for own in instance.live_loops)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,22 +48,18 @@ def seam_places(instance: Instance, loops: Loops) -> tuple[Seam, ...]:
     return tuple(seams)
 
 
-def split(instance: Instance, colors: Sequence[frozenset[int]]) -> list[ConnectedPart]:
+def split(instance: Instance) -> list[ConnectedPart]:
     """The parts of an instance that live edges connect, the smallest first.
 
     Segments never reach from one into another, so their minima and bounds add up.
-
-    Args:
-        colors: the colors each cell may be painted in, all or some of its own, one at least.
     """
-    loops = instance.live_loops
+    loops = loops_of(instance)
     seams = seam_places(instance, loops)
     live: dict[int, tuple[int, ...]] = {}
     connected = UnionFind(range(len(instance.cells)))
     for edge in instance.edges:
-        own = instance.joinable(edge.id)
-        if own and (shared := colors[edge.left] & colors[edge.right] & set(own)):
-            live[edge.id] = tuple(sorted(shared))
+        if own := instance.joinable(edge.id):
+            live[edge.id] = own
             connected.union(edge.left, edge.right)
     found = sorted(map(sorted, connected.sets()), key=len)
     number = {cell: place for cells in found for place, cell in enumerate(cells)}
@@ -81,7 +81,7 @@ def split(instance: Instance, colors: Sequence[frozenset[int]]) -> list[Connecte
                     instance.name,
                     instance.colors,
                     tuple(
-                        Cell(place, tuple(sorted(colors[cell])), loops[cell])
+                        Cell(place, instance.cells[cell].colors, loops[cell])
                         for place, cell in enumerate(cells)
                     ),
                     tuple(edges),

@@ -1,4 +1,8 @@
-"""The CP-SAT solver: reductions, then every part on its own until it is proved."""
+"""The CP-SAT solver: a cover, local search, separating pairs, and the model.
+
+Segments never reach from one part of the instance into another (``parts``), so minima and bounds
+of parts add up. Each step is done for every part that is not proved before the next step begins.
+"""
 
 from __future__ import annotations
 
@@ -6,46 +10,48 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from importlib.metadata import version
+from math import isfinite
 
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division, Seam, cost_of, count_segments
-from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.data.solution import ModelSize, Seam, count_segments
+from cellcolor.deadline import OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import greedy_strangers
-from cellcolor.solvers.bounds.reductions import LeftOut, drop_dominated, left_out
-from cellcolor.solvers.cpsat.conflict_certificate import conflict_certificate
-from cellcolor.solvers.cpsat.cuts import FewestCuts
-from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
-from cellcolor.solvers.cpsat.model.full import cheapest
-from cellcolor.solvers.cpsat.model.painting import (
+from cellcolor.solvers.cpsat.certificates import conflict_certificate
+from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph
+from cellcolor.solvers.cpsat.optimal_schemes import OptimalSchemes
+from cellcolor.solvers.cpsat.painting import (
     Block,
     Painting,
     canonical,
     division_of,
     painting_of,
 )
-from cellcolor.solvers.cpsat.model_runs import Runner
-from cellcolor.solvers.cpsat.part_search import PartSearch
-from cellcolor.solvers.cpsat.parts import seam_places, split
-from cellcolor.solvers.cpsat.schemes.enumeration import OptimalSchemes
+from cellcolor.solvers.cpsat.part import Part
+from cellcolor.solvers.cpsat.parts import loops_of, seam_places, split
+from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
+
+SHARES = {"exact": 1 / 4, "improve": 1 / 5, "separate": 1 / 2, "model": 2 / 3, "turn": 1 / 4}
+"""The share of the time that is left which each step gets."""
+
+TURNS = 3
+"""Local searches from different starts before the model."""
+
+EFFORT, GROWTH = 0.5, 2.0
+"""Deterministic seconds for a plan, and the factor by which they grow from turn to turn."""
 
 RESERVES = 4
 """The search ends before the deadline by this multiple of the time to put a division together.
 That time is needed once more for the answer, then by the checker, and for writing the file."""
 
-_Stage = Callable[[PartSearch, Deadline], None]
-
 
 class CpSatSolver:
-    """Fewest segments by plans, routes and a CP-SAT model with sub-cell cutting paths.
-
-    Args:
-        plans: False leaves everything to the model.
-    """
+    """Fewest segments by covers, local search, separating pairs, and the model of the coloring."""
 
     abilities = Abilities(
         search_spaces=("paper", "surface"),
@@ -53,12 +59,7 @@ class CpSatSolver:
         optimal_schemes=True,
         schemes_of_several_loops=True,
         start=True,
-        fewest_cuts=True,
-        objective=True,
     )
-
-    def __init__(self, plans: bool = True) -> None:
-        self._plans = plans
 
     @property
     def version(self) -> str:
@@ -70,8 +71,8 @@ class CpSatSolver:
     ) -> Answer:
         """A division with the fewest segments, or the best found before the deadline."""
         if not instance.cells:
-            return Answer((), (), (), 0 if options.fewest_cuts else None)
-        search = _Search(instance, options, progress, self._plans)
+            return Answer((), (), ())
+        search = _Search(instance, options, progress)
         with suppress(OutOfTime):
             search.run()
         return search.answer()
@@ -83,150 +84,97 @@ class CpSatSolver:
         return OptimalSchemes(instance, options, segments)
 
 
-def model_alone() -> CpSatSolver:
-    """The full model without the plans that settle most instances before it is built."""
-    return CpSatSolver(plans=False)
-
-
 class _Search:
     """The best division of the whole instance so far, put together from its parts."""
 
-    def __init__(
-        self, instance: Instance, options: Options, progress: OnProgress | None, plans: bool
-    ) -> None:
-        self._instance = instance
-        self._options = options
-        self._progress = progress
-        self._costs = options.costs(instance)
-        self._plans = plans
-        self._runner = Runner(options)
-        self._loops = instance.live_loops
+    def __init__(self, instance: Instance, options: Options, progress: OnProgress | None) -> None:
+        self._instance, self._options, self._progress = instance, options, progress
+        self._loops = loops_of(instance)
+        self._places = seam_places(instance, self._loops)
         self._own = tuple(frozenset(cell.colors) for cell in instance.cells)
         self._start: tuple[DartGraph, Painting] | None = None
-        self._whole: tuple[DartGraph, Painting] | None = None
-        self._parts: list[PartSearch] = []
-        self._fewest: FewestCuts | None = None
-        self._left_out: list[LeftOut] = []
+        self._parts: list[Part] = []
+        begun = time.monotonic()
+        self._whole = self._put_together()
+        self._deadline = options.deadline.earlier(RESERVES * (time.monotonic() - begun))
+        self._runner = Runner(replace(options, deadline=self._deadline))
 
     def run(self) -> None:
-        """Solve until the best division is proved, or there is no time left.
+        """Solve until every part is proved, or there is no time left.
+
+        A set cover is the first bound, and a first division. Trees and hubs are solved exactly.
+        Local search improves the division. Separating pairs raise the bound, and each plan that
+        respects them is a start of local search. Then the complete model is solved, hinted and
+        bounded by what is known. What is still open is improved in turns until the deadline.
 
         Raises:
             OutOfTime: the deadline, or an interrupt.
         """
-        options, deadline = self._options, self._options.deadline
-        begun = time.monotonic()
-        self._whole = self._put_together()
-        deadline = deadline.earlier(RESERVES * (time.monotonic() - begun))
-        self._options = options = replace(options, deadline=deadline)
-        self._runner = Runner(options)
-        if options.start is not None:
-            self._begin_with(options.start)
-        deadline.check()
-        self._left_out = left_out(self._instance, deadline, self._costs)
-        colors = drop_dominated(self._instance, self._left_out)
-        deadline.check()
-        self._parts = [
-            PartSearch(part, options, self._runner, self._report)
-            for part in deadline.watch(split(self._instance, colors))
-        ]
+        if self._options.start is not None:
+            self._begin_with(self._options.start)
+        self._deadline.check()
+        options = replace(self._options, deadline=self._deadline)
+        for part in self._deadline.watch(split(self._instance)):
+            self._parts.append(Part(part, options, self._runner, self._report))
         self._report()
-        for stage in self._stages():
-            self._run_stage(stage, [part for part in self._parts if not part.done])
-        if options.fewest_cuts and all(part.segments == part.bound for part in self._parts):
-            self._cut_least(colors)
+        self._each(Part.cover, 1.0)
+        self._each(Part.solve_exactly, SHARES["exact"])
+        self._each(partial(Part.improve, turn=0), SHARES["improve"])
+        self._each(partial(Part.separate, effort=EFFORT), SHARES["separate"])
+        for turn in range(1, TURNS):
+            self._each(partial(Part.improve, turn=turn), SHARES["improve"])
+        self._each(Part.solve_model, SHARES["model"])
+        turn = TURNS
+        while isfinite(self._deadline.moment) and any(not part.done for part in self._parts):
+            self._deadline.check()
+            self._each(partial(Part.improve, turn=turn), SHARES["turn"])
+            self._each(partial(Part.separate, effort=EFFORT * GROWTH**turn), SHARES["turn"])
+            turn += 1
 
     def answer(self) -> Answer:
         """The best division, in the strands that were asked for, and the proved bounds."""
         graph, painting = self._put_together()
         division = division_of(graph, painting, self._options.strands)
         if self._start is not None:
-            known, its = self._start
-            start = division_of(known, its, self._options.strands)
-            if self._counted(start) < self._counted(division):
-                graph, division = known, start
-        notes = {note for part in self._parts for note in part.models.notes}
-        cuts = 0 if self._options.fewest_cuts else None
-        if self._fewest is not None:
-            cuts = self._fewest.bound
-            notes |= set(self._fewest.notes)
-            if self._fewest.best is not None:
-                graph, painting = self._fewest.best
-                division = division_of(graph, painting, self._options.strands)
-        return Answer(division, graph.seams, self._bounds(), cuts, tuple(sorted(notes)))
+            start = division_of(*self._start, self._options.strands)
+            if count_segments(start) < count_segments(division):
+                graph, division = self._start[0], start
+        notes = {note for part in self._parts for note in part.notes}
+        sizes = [part.model_size for part in self._parts if part.model_size is not None]
+        model = None
+        if sizes:
+            variables, constraints = (
+                (size.variables for size in sizes),
+                (s.constraints for s in sizes),
+            )
+            model = ModelSize(sum(variables), sum(constraints))
+        return Answer(division, graph.seams, self._bounds(), tuple(sorted(notes)), model)
 
-    def _counted(self, division: Division) -> int:
-        """The segments of a division, or what they cost."""
-        costs = self._costs
-        return count_segments(division) if costs is None else cost_of(division, costs)
+    def _each(self, step: Callable[..., None], share: float) -> None:
+        """One step of each open part, in a share of the time that is left.
 
-    def _cut_least(self, colors: tuple[frozenset[int], ...]) -> None:
-        """Among the divisions with the fewest segments, one with the fewest cutting paths."""
-        live = self._instance.live_edges
-        enough = {edge: width for part in self._parts for edge, width in part.widest.items()}
-        segments = sum(part.segments for part in self._parts)
-        self._fewest = FewestCuts(
-            self._instance,
-            colors,
-            {edge: enough.get(edge, 1) for edge in live},
-            dict.fromkeys(live, self._options.strands),
-            segments,
-            self._runner,
-        )
-        self._fewest.run(*self._put_together())
-
-    def _stages(self) -> list[_Stage]:
-        """The stages in order, steps 3 to 11 of docs/solver.md.
-
-        Each is done for all open parts before the next begins.
+        Easy parts come first and leave most of their time to the others.
         """
-        if not self._plans:
-            return [PartSearch.cover, lambda part, deadline: part.models.solve(deadline)]
-
-        def within(share: float, stage: _Stage) -> _Stage:
-            return lambda part, deadline: stage(part, deadline.share(share))
-
-        return [
-            PartSearch.cover,
-            within(1 / 4, PartSearch.count_many_links),
-            within(1 / 2, PartSearch.solve_exactly),
-            within(1 / 4, PartSearch.begin_large),
-            lambda part, its: part.planning.route(its.share(1 / 4 if part.large else 1 / 2)),
-            within(1 / 4, PartSearch.count_few_links),
-            PartSearch.accept_exact,
-            within(1 / 4, PartSearch.recolor_best),
-            within(1 / 2, lambda part, its: part.planning.go_on(its)),
-            within(1 / 3, PartSearch.plan_in_detail),
-            within(3 / 4, PartSearch.narrow_gap),
-            within(3 / 4, PartSearch.decide_plans),
-            within(1 / 3, PartSearch.plan_harder),
-            lambda part, its: part.models.solve(its),
-            PartSearch.improve_on,
-        ]
-
-    def _run_stage(self, stage: _Stage, parts: list[PartSearch]) -> None:
-        """One stage for some parts, each with its share of the time that is left.
-
-        Easy parts come first and leave most of their shares to the others.
-        """
-        for number, part in enumerate(parts):
-            self._options.deadline.check()
+        deadline = self._deadline.share(share)
+        left = [part for part in self._parts if not part.done]
+        for number, part in enumerate(left):
+            self._deadline.check()
             try:
-                stage(part, self._options.deadline.share(1 / (len(parts) - number)))
+                step(part, deadline=deadline.share(1 / (len(left) - number)))
             except OutOfTime as error:
                 if isinstance(error, KeyboardInterrupt):
                     raise
 
     def _begin_with(self, start: Start) -> None:
         places = [replace(seam, strands=0) for seam in start.seams]
-        if places != list(seam_places(self._instance, self._loops)):
+        if places != list(self._places):
             raise InputError(None, "seams", "lie in other places than this solver puts them")
         graph = self._whole_graph(start.seams)
         self._start = graph, canonical(graph, painting_of(graph, start.division))
 
     def _put_together(self) -> tuple[DartGraph, Painting]:
         """The best divisions of all parts as one; without parts every cell is painted whole."""
-        if not self._parts and self._whole is not None:
+        if not self._parts and hasattr(self, "_whole"):
             return self._whole
         found: dict[int, list[tuple[int, list[Strand]]]] = {}
         widths: dict[int, int] = {}
@@ -235,15 +183,12 @@ class _Search:
             widths |= {seam.id: seam.strands for seam in graph.seams}
             for cell, blocks in zip(part.cells, painting, strict=True):
                 found[cell] = [(b.color, [graph.darts[d].name for d in b.darts]) for b in blocks]
-        seams = [
-            replace(seam, strands=widths.get(seam.id, 0))
-            for seam in seam_places(self._instance, self._loops)
-        ]
+        seams = [replace(seam, strands=widths.get(seam.id, 0)) for seam in self._places]
         graph = self._whole_graph(seams)
         painting = [
             [
                 Block(color, {graph.number_of[name] for name in names})
-                for color, names in found.get(cell, [(cheapest(colors, self._costs), [])])
+                for color, names in found.get(cell, [(min(colors), [])])
             ]
             for cell, colors in enumerate(self._own)
         ]
@@ -254,30 +199,37 @@ class _Search:
         return dart_graph(self._instance, self._own, strands, seams, self._loops)
 
     def _bounds(self) -> tuple[Bound, ...]:
-        """The proved bounds of the number of segments, or of the cost; those of parts add up."""
+        """The proved bounds of the number of segments; those of parts add up.
+
+        A kind is named only where it raised the bound of some part.
+        """
         if not self._parts:
             return (Bound("strangers", len(greedy_strangers(self._instance)), "surface"),)
-        certificate = conflict_certificate(self._left_out, self._parts)
-        bounds = (
+        certificate = conflict_certificate(self._parts)
+        by = {part.by for part in self._parts}
+        bounds = [
             Bound("cover", sum(part.cover_bound for part in self._parts), "surface"),
             Bound(
-                "hubs" if any(part.hubs for part in self._parts) else "conflicts",
+                "conflicts",
                 sum(part.surface_bound for part in self._parts),
                 "surface",
                 None if certificate is None else certificate.to_document(),
             ),
-            Bound("crossings", sum(part.proved_for_surface for part in self._parts), "surface"),
-            Bound("model", sum(part.bound for part in self._parts), "strands"),
-        )
-        if self._costs is None:
-            return bounds
-        strangers = Bound("strangers", len(greedy_strangers(self._instance)), "surface")
-        return (strangers, *(replace(bound, of="cost") for bound in bounds))
+        ]
+        surface = sum(part.proved_for_surface for part in self._parts)
+        bound = sum(part.bound for part in self._parts)
+        if "model" in by:
+            bounds.append(Bound("crossings", surface, "surface"))
+            bounds.append(Bound("model", bound, "strands"))
+        elif "exact" in by:
+            bounds.append(Bound("exact", surface, "surface"))
+            bounds.append(Bound("exact", bound, "strands"))
+        return tuple(bounds)
 
     def _report(self) -> None:
         if self._progress is None or not self._parts:
             return
         known = sum(part.known for part in self._parts)
         if self._start is not None:
-            known = min(known, self._counted(division_of(*self._start)))
+            known = min(known, count_segments(division_of(*self._start)))
         self._progress(known, sum(part.bound for part in self._parts))

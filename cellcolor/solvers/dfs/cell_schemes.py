@@ -120,8 +120,12 @@ class _CellSearch:
         if several and single > self._room[i]:
             return  # "a single × cannot form a sub-cell": too few darts are left for these
         side = self._side(i, code)
+        # Of an edge's strands those that are joined come first: to exchange one in state 0 with its
+        # neighbor in state 1 changes neither the order of the darts in state 1 nor the segments.
+        strand = self._cell.strands[i] if side is None else 0
+        beside_one = bool(code.owner) and code.owner[-1] >= 0
         if side is None:
-            colors = sorted(self._cell.joinable[i])
+            colors = sorted(self._cell.joinable[i]) if strand < 1 or beside_one else []
         else:
             colors = [side[1]] if side[0] == 1 else []
         for level in reversed(range(len(code.opened))):
@@ -133,7 +137,7 @@ class _CellSearch:
         for color in colors if several or not block else ():
             if self._follows(code, i, block, color):
                 yield _Code((*code.owner, block), (*code.colors, color), (*code.opened, block), i)
-        if side is None or side[0] == 0:
+        if (side is None or side[0] == 0) and not (strand < 0 and beside_one):
             yield _Code((*code.owner, -1), code.colors, code.opened, code.last)
 
     def _side(self, i: int, code: _Code) -> Side | None:

@@ -8,7 +8,7 @@ of the CP-SAT solver and the checker have theirs.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline
@@ -19,33 +19,27 @@ from cellcolor.solvers.dfs.search import Painting, Search
 class CoverSearch(Search):
     """The depth-first search in which a branch ends where a cover says so."""
 
-    def __init__(
-        self, graph: Graph, cells: Sequence[GraphCell], price: Sequence[int], deadline: Deadline
-    ) -> None:
-        super().__init__(graph, cells, price, deadline)
+    def __init__(self, graph: Graph, cells: Sequence[GraphCell], deadline: Deadline) -> None:
+        super().__init__(graph, cells, deadline)
         self._region = _regions(graph.instance, [cell.id for cell in cells])
-        self._price_of = {number: price[color] for (_, color), number in self._region.items()}
         self._cell_of = {dart: cell.id for cell in cells for dart in cell.darts}
         self._covers: dict[tuple[int, int], int] = {}
 
     def least(self, painting: Painting) -> int:
-        complete, held = painting.cost, 0
-        for color, dart in set(painting.growing.values()):
-            complete -= self.price[color]
+        growing, held = set(painting.growing.values()), 0
+        for color, dart in growing:
             held |= 1 << self._region[self._cell_of[dart], color]
-        return complete + self._cover(len(painting.schemes), held)
+        return painting.cost - len(growing) + self._cover(len(painting.schemes), held)
 
     def _cover(self, depth: int, held: int) -> int:
-        """The least price of regions, those held (bits) among them, that touch all cells left."""
+        """The fewest regions, those held (bits) among them, that touch all cells left."""
         if (depth, held) not in self._covers:
             touching = (
                 sum(1 << self._region[cell.id, color] for color in cell.colors)
                 for cell in self.cells[depth:]
             )
             needed = frozenset(regions for regions in touching if not regions & held)
-            price = sum(self._price_of[region] for region in _bits(held))
-            price += _hitting(needed, self._price_of, self.deadline)
-            self._covers[depth, held] = price
+            self._covers[depth, held] = held.bit_count() + _hitting(needed, self.deadline)
         return self._covers[depth, held]
 
 
@@ -72,27 +66,25 @@ def _bits(of: int) -> Iterator[int]:
         yield bit.bit_length() - 1
 
 
-def _hitting(sets: frozenset[int], price: Mapping[int, int], deadline: Deadline) -> int:
-    """The least price of a hitting set, one bit or more of each bit set, by branch and bound."""
-    best = sum(min(price[place] for place in _bits(one)) for one in sets)
-    trail = [iter([(sets, 0)])]
+def _hitting(sets: frozenset[int], deadline: Deadline) -> int:
+    """The size of a smallest hitting set, one bit or more of each bit set, by branch and bound."""
+    best = len(sets)
+    trail = [iter([sets])]
     while trail:
         deadline.check()
-        left, cost = next(trail[-1], (None, 0))
+        left = next(trail[-1], None)
         if left is None:
             trail.pop()
         elif not left:
-            best = min(best, cost)
-        elif cost + 1 < best:
-            trail.append(_hits(left, price, cost))
+            best = min(best, len(trail) - 1)
+        elif len(trail) < best:
+            trail.append(_hits(left))
     return best
 
 
-def _hits(
-    sets: frozenset[int], price: Mapping[int, int], cost: int
-) -> Iterator[tuple[frozenset[int], int]]:
-    """For each bit of the smallest set, the sets that it does not hit, and the price so far."""
+def _hits(sets: frozenset[int]) -> Iterator[frozenset[int]]:
+    """For each bit of the smallest set, the sets that it does not hit."""
     sets = frozenset(s for s in sets if not any(t != s and t & s == t for t in sets))
     smallest = min(sets, key=lambda s: (s.bit_count(), s))
     for place in _bits(smallest):
-        yield frozenset(s for s in sets if not s >> place & 1), cost + price[place]
+        yield frozenset(s for s in sets if not s >> place & 1)

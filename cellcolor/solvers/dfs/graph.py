@@ -41,6 +41,16 @@ class GraphCell:
         place = {dart: i for i, dart in enumerate(self.darts)}
         return tuple(place.get(dart, -1) for dart in self.twins)
 
+    @cached_property
+    def strands(self) -> tuple[int, ...]:
+        """For each dart 0 unless the one before is a strand of the same edge, its neighbor.
+
+        It is then 1 if their numbers ascend here, -1 if they descend.
+        """
+        edges = [strand_of(dart)[0] for dart in self.darts]
+        pairs = zip([0, *edges], edges, strict=False)
+        return tuple((1 if edge > 0 else -1) * (edge == before) for before, edge in pairs)
+
 
 class Graph:
     """The cells of an instance, every live edge with so many parallel strands."""

@@ -29,8 +29,7 @@ class Painting:
 
     Attributes:
         schemes: of the solved cells.
-        cost: "the number of color segments in the current portion of the graph", where each
-            costs 1; otherwise what they cost together.
+        cost: "the number of color segments in the current portion of the graph".
         sides: what is shown at each dart that faces an unsolved cell.
         growing: the segment of each of these that is in state 1.
     """
@@ -46,16 +45,13 @@ class Search:
 
     Args:
         cells: the cells of the part, in the order in which they are solved.
-        price: what a segment of each color costs; the paper's is 1.
 
     Attributes:
         budget: the most that a painting may cost; lower it while the search runs to prune.
     """
 
-    def __init__(
-        self, graph: Graph, cells: Sequence[GraphCell], price: Sequence[int], deadline: Deadline
-    ) -> None:
-        self.graph, self.cells, self.price, self.deadline = graph, cells, price, deadline
+    def __init__(self, graph: Graph, cells: Sequence[GraphCell], deadline: Deadline) -> None:
+        self.graph, self.cells, self.deadline = graph, cells, deadline
         self.budget: float = math.inf
 
     def paintings(self) -> Iterator[Painting]:
@@ -85,10 +81,9 @@ class Search:
         all of one color will be joined.
         """
         growing = set(painting.growing.values())
-        complete = painting.cost - sum(self.price[color] for color, _ in growing)
         if not growing:
-            return complete + (len(painting.schemes) < len(self.cells))
-        return complete + sum(self.price[color] for color in {color for color, _ in growing})
+            return painting.cost + (len(painting.schemes) < len(self.cells))
+        return painting.cost - len(growing) + len({color for color, _ in growing})
 
     def branches(self, painting: Painting) -> Iterator[Painting]:
         """The next cell solved in every way."""
@@ -106,7 +101,7 @@ class Search:
         cost, growing = before.cost, dict(before.growing)
         for color, darts in scheme.subcells:
             joined = {growing[t] for i in darts if (t := cell.twins[i]) in growing}
-            cost += self.price[color] * (1 - len(joined))
+            cost += 1 - len(joined)
             if darts:
                 segment = color, cell.darts[darts[0]]
                 growing |= {dart: segment for dart, own in growing.items() if own in joined}

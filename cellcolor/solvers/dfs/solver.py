@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from cellcolor.data.bounds import Bound, Bounded
+from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import DartName
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, number_segments
@@ -29,7 +29,6 @@ class ReferenceSolver:
         search_spaces=("paper", "surface"),
         several_loops=True,
         optimal_schemes=True,
-        objective=True,
     )
     search: type[Search] = Search
     bound_before: str | None = None
@@ -43,8 +42,7 @@ class ReferenceSolver:
         In the search space ``surface`` it has the fewest segments that ``options.strands``
         corridors across each edge allow, and the lower bound is one that any division obeys.
         """
-        costs = options.costs(instance)
-        parts = self._parts(instance, options, costs)
+        parts = self._parts(instance, options)
         before = sum(part.bound for part in parts)
 
         def report() -> None:
@@ -63,10 +61,9 @@ class ReferenceSolver:
                     report()
         except OutOfTime:
             pass
-        of: Bounded = "segments" if costs is None else "cost"
-        bounds = [Bound("search", sum(part.bound for part in parts), "strands", of=of)]
+        bounds = [Bound("search", sum(part.bound for part in parts), "strands")]
         if self.bound_before is not None:
-            bounds.insert(0, Bound(self.bound_before, before, "surface", of=of))
+            bounds.insert(0, Bound(self.bound_before, before, "surface"))
         if any(part.cost is None for part in parts):
             return Answer(None, (), tuple(bounds))
         blocks = {cell: found for part in parts for cell, found in part.blocks.items()}
@@ -116,14 +113,9 @@ class ReferenceSolver:
             else:
                 yield _division(instance, blocks)
 
-    def _parts(
-        self, instance: Instance, options: Options, costs: Sequence[int] | None = None
-    ) -> list[_Part]:
+    def _parts(self, instance: Instance, options: Options) -> list[_Part]:
         graph = Graph(instance, options.strands)
-        price = costs or (1,) * len(instance.colors)
-        return [
-            _Part(self.search, graph, cells, price, options.deadline) for cells in graph.parts()
-        ]
+        return [_Part(self.search, graph, cells, options.deadline) for cells in graph.parts()]
 
 
 class CoverReferenceSolver(ReferenceSolver):
@@ -137,22 +129,16 @@ class _Part:
     """The minimum of one connected part of the graph.
 
     Attributes:
-        cost: of the best division so far, None when there is none.
-        bound: no division costs less.
+        cost: the number of segments of the best division so far, None when there is none.
+        bound: no division has fewer.
         blocks: the best division.
         seams: what its darts refer to.
     """
 
     def __init__(
-        self,
-        search: type[Search],
-        graph: Graph,
-        cells: Sequence[int],
-        price: Sequence[int],
-        deadline: Deadline,
+        self, search: type[Search], graph: Graph, cells: Sequence[int], deadline: Deadline
     ) -> None:
-        self._kind, self._graph, self._cells = search, graph, cells
-        self._price, self._deadline = price, deadline
+        self._kind, self._graph, self._cells, self._deadline = search, graph, cells, deadline
         self.cost: int | None = None
         self.blocks: _Blocks = {}
         self.seams: list[Seam] = []
@@ -198,7 +184,7 @@ class _Part:
     def _search(self, seam_strands: int) -> tuple[Search, list[Seam]]:
         built = [self._graph.cell(cell, seam_strands) for cell in self._cells]
         cells = [cell for cell, _ in built]
-        search = self._kind(self._graph, cells, self._price, self._deadline)
+        search = self._kind(self._graph, cells, self._deadline)
         return search, [seam for _, seams in built for seam in seams]
 
 

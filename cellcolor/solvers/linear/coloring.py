@@ -182,7 +182,7 @@ class Coloring:
         """What is counted: roots, and cells that are alone, with no dart in state 1.
 
         A root is the first dart in state 1 of an undivided cell; every segment has such a cell
-        (docs/encodings.md).
+        (docs/formulation.md).
         """
         model = self.model
         for cell, loop in enumerate(self._loops):

@@ -9,6 +9,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 
+from cellcolor.data.solution import ModelSize
+
 Literals = tuple[int, ...]
 """Variables, counted from 1; a negative number stands for the variable's negation."""
 
@@ -38,6 +40,12 @@ class Model:
     def variables(self) -> int:
         """How many there are."""
         return len(self.names) - 1
+
+    @property
+    def size(self) -> ModelSize:
+        """How many variables and constraints there are."""
+        groups = (self.at_least_one, self.at_most_one, self.exactly_one)
+        return ModelSize(self.variables, sum(map(len, groups)))
 
     def new(self, word: str, *numbers: int) -> int:
         """A new variable."""

@@ -57,7 +57,7 @@ class _Rival:
             return Answer((), (), ())
         coloring = Coloring(instance)
         best: Division | None = None
-        bound = 0
+        bound, size = 0, None
         failure = None
         # A moment is kept back for reading the answer.
         deadline = options.deadline.earlier(0.05 * min(options.deadline.left, 10.0))
@@ -67,6 +67,7 @@ class _Rival:
                 lines = {"mps": mps, "wcnf": wcnf}[self.ending](coloring.model, instance.sha256)
                 for line in deadline.watch(lines):
                     stream.write(f"{line}\n")
+            size = coloring.model.size
             # Its own limit comes earlier, so that it can say what it knows in the end.
             arguments = self.name, str(file), f"{0.9 * deadline.left:.2f}", str(options.seed)
             command = [sys.executable, "-m", "cellcolor.solvers.linear.programs", *arguments]
@@ -90,7 +91,7 @@ class _Rival:
         if failure is not None and best is None and bound == 0:
             raise CellcolorError(f"{self.name}: {failure}")
         notes = () if failure is None else (f"{self.called} ended early: {failure}.",)
-        return Answer(best, (), (Bound("model", bound, "strands"),), notes=notes)
+        return Answer(best, (), (Bound("model", bound, "strands"),), notes, size)
 
 
 class HighsSolver(_Rival):

@@ -44,7 +44,9 @@ def verify_apart(proof: Proof, certificate: Apart, value: int) -> None:
 @pytest.fixture
 def toy(monkeypatch: pytest.MonkeyPatch) -> BoundKind:
     """The kind ``apart``; this is all that a new kind needs."""
-    kind = BoundKind("each cell has colors of its own", "It holds for what it holds.", Apart)
+    kind = BoundKind(
+        "each cell has colors of its own", "It holds for what it holds.", certificate=Apart
+    )
     monkeypatch.setitem(KINDS, "apart", kind)
     monkeypatch.setitem(VERIFIERS, "apart", verify_apart)
     return kind
@@ -79,7 +81,7 @@ def test_a_new_kind_is_told_and_verified() -> None:
 
 
 def test_without_kind_or_verifier_it_is_a_claim(monkeypatch: pytest.MonkeyPatch) -> None:
-    for table in ({}, {"apart": BoundKind("nobody can verify it", "", Apart)}):
+    for table in ({}, {"apart": BoundKind("nobody can verify it", certificate=Apart)}):
         for name, kind in table.items():
             monkeypatch.setitem(KINDS, name, kind)
         (verdict,) = cellcolor.check(SURFACE, solved(0, 0)).bounds

@@ -18,7 +18,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.solvers.bounds.cover import color_regions, hard_cells, set_cover
-from cellcolor.solvers.bounds.merged_surface import MergedCells, merge_cells, merge_further
+from cellcolor.solvers.bounds.merged_surface import merge_cells
 from cellcolor.solvers.bounds.reductions import drop_dominated, enough_crossings, left_out
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
@@ -186,37 +186,3 @@ def test_merging_around_a_cell_leaves_a_hole() -> None:
     ring = found.merged_cell_of[0]
     assert found.merged_cell_of == {0: ring, 1: ring, 2: 2, 3: 3}
     assert {frozenset(loop) for loop in found.loops[ring]} == {frozenset({2, 4}), frozenset({5, 6})}
-
-
-@examples(30)
-@given(seed=SEEDS, cells=st.integers(2, 20), some=st.sets(st.integers(0, 3), min_size=1))
-def test_what_is_merged_step_by_step_is_merged_at_once(
-    seed: int, cells: int, some: set[int]
-) -> None:
-    """For all colors first, then for some of them."""
-    instance = planar_graph(seed, cells, cells + 4, 4)
-    own = {cell.id: frozenset(cell.colors) for cell in instance.cells}
-    fine = merge_cells(instance, own)
-    few = {cell: colors & some for cell, colors in own.items() if colors & some}
-    at_once = merge_cells(instance, few)
-    seen = {name: own[name] & some for name in fine.loops if own[name] & some}
-    by_steps = merge_further(fine, seen, {})
-    assert {
-        frozenset[int]().union(*(fine.cells()[name] for name in names))
-        for names in by_steps.cells().values()
-    } == set(at_once.cells().values())
-    assert by_steps.joinable == at_once.joinable
-
-
-def test_cells_that_are_kept_apart_are_not_merged() -> None:
-    instance = Instance(
-        "two",
-        ("red",),
-        (Cell(0, (RED,), ((1,),)), Cell(1, (RED,), ((-1,),))),
-        (Edge(1, 0, 1),),
-    )
-    own = {0: frozenset({RED}), 1: frozenset({RED})}
-    fine = MergedCells({0: [[1]], 1: [[-1]]}, {1: (0, 1)}, {1: own[0]}, {0: 0, 1: 1})
-    assert len(merge_cells(instance, own).cells()) == 1
-    assert len(merge_further(fine, own, {}).cells()) == 1
-    assert len(merge_further(fine, own, {1: "avoided"}).cells()) == 2

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import combinations, product
 
-import networkx as nx
 from conflicts import conflicts
 from hypothesis import given, reject
 from hypothesis import strategies as st
 from library import PAPER
 from meshes import grid_faces, grid_points, surface
-from rooms import crossed_rings, graph, hub, petal_cells
+from rooms import can_pass, crossed_rings, graph, hub, petal_cells
 from vertex_minima import vertex_minimum
 
 from cellcolor.data.instance import Instance
@@ -120,42 +119,6 @@ def framed(draw: st.DrawFn, width: int, height: int) -> LabelledSurface:
         grid_faces(width, height),
         [labels[row, column] for row in range(height) for column in range(width)],
     )
-
-
-def can_pass(
-    mesh: LabelledSurface, colors: tuple[int, int], one: list[set[int]], other: list[set[int]]
-) -> bool:
-    """Whether two disjoint sets of mesh vertices exist, connected in the one and the other color,
-    that each touch two sets of vertices: every path without shortcuts is tried for the first."""
-    graphs = []
-    for color in colors:
-        graph: nx.Graph[int] = nx.Graph()
-        graph.add_nodes_from(v for v, own in enumerate(mesh.vertex_colors) if color in own)
-        cracked = {(c.i, c.j) for c in mesh.cracks if color in c.colors}
-        graph.add_edges_from(
-            (i, j)
-            for i, j in mesh.left_of
-            if i in graph and j in graph and (min(i, j), max(i, j)) not in cracked
-        )
-        graphs.append(graph)
-    first, second = graphs
-
-    def others_meet(path: list[int]) -> bool:
-        rest = second.subgraph(second.nodes - set(path))
-        return any(
-            not part.isdisjoint(other[0]) and not part.isdisjoint(other[1])
-            for part in nx.connected_components(rest)
-        )
-
-    def extend(path: list[int]) -> bool:
-        if not others_meet(path):
-            return False
-        if path[-1] in one[1]:
-            return True
-        near = set().union(*(first[v] for v in path[:-1])) | set(path)
-        return any(extend([*path, v]) for v in first[path[-1]] if v not in near)
-
-    return any(extend([start]) for start in sorted(one[0]))
 
 
 @examples(30)

@@ -19,7 +19,7 @@ from cellcolor.lab.families import hub_grid
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import exact_shapes, hub_ways
 from cellcolor.solvers.cpsat.exact_shapes import exact_minimum
-from cellcolor.solvers.cpsat.model.painting import canonical, division_of
+from cellcolor.solvers.cpsat.painting import canonical, division_of
 from cellcolor.solvers.cpsat.parts import split
 from cellcolor.solvers.interface import Options
 from examples import examples
@@ -83,7 +83,7 @@ def some_hubs(seed: int, hubs: int, petals: int, edges: int) -> Instance:
 def exact(instance: Instance, *, certain: bool = True) -> int | None:
     """The sum of the parts' minima; each part's division is legal and has as many segments."""
     total: int | None = 0
-    for part in split(instance, [frozenset(cell.colors) for cell in instance.cells]):
+    for part in split(instance):
         found = exact_minimum(part, NEVER)
         assert found is not None or not certain
         if found is None:
@@ -124,7 +124,7 @@ def test_hubs_that_share_petals(seed: int, hubs: int, petals: int, edges: int) -
     [("2x2x3", 16), ("3x3x2", 22), ("4x4x2", 32), ("5x5x2", 48), ("6x6x2", 63)],
 )
 def test_grids_of_hubs(name: str, segments: int) -> None:
-    """Their minima were proved by the full model, most of them by clingo as well."""
+    """Their minima were proved by a CP-SAT model, most of them by clingo as well."""
     instance = Instance.read(INSTANCES / "hubs" / f"hub_grid_{name}.json")
     assert exact(instance) == segments
 
@@ -145,7 +145,7 @@ def test_limits_leave_hubs_to_others(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_no_time() -> None:
-    (part,) = split(a_tree(0, 5, 1), [frozenset((0,))] * 5)
+    (part,) = split(a_tree(0, 5, 1))
     with pytest.raises(OutOfTime):
         exact_minimum(part, Deadline.after(-1))
 

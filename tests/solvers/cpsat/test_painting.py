@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from copy import deepcopy
+from random import Random
 
+import holes
 from dart_graphs import graph_of
 from hypothesis import given
 from hypothesis import strategies as st
-from ortools.sat.python import cp_model
 from rooms import hub
 
 from cellcolor.checker.division import check_division
 from cellcolor.lab.families import planar_graph
-from cellcolor.solvers.bounds.cover import color_regions
-from cellcolor.solvers.cpsat.model.full import full_model, read_painting
-from cellcolor.solvers.cpsat.model.painting import Block, canonical, division_of
-from cellcolor.solvers.cpsat.routes.routing import route
-from cellcolor.solvers.cpsat.routes.sectors import refined
-from cellcolor.solvers.cpsat.routes.segment_plans import PlannedSegment
+from cellcolor.solvers.cpsat.dart_graph import DartGraph, complete_graph
+from cellcolor.solvers.cpsat.drawing import seamed
+from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, division_of, segments_of
+from cellcolor.solvers.cpsat.parts import loops_of, seam_places
+from cellcolor.solvers.cpsat.sectors import painting_of_sectors, sector_graph
 from examples import examples
 
 RED, BLUE = 0, 1
@@ -25,47 +24,53 @@ RED, BLUE = 0, 1
 SEEDS = st.integers(0, 10**6)
 
 
-@examples(20)
-@given(seed=SEEDS, cells=st.integers(2, 7), colors=st.integers(1, 4))
-def test_what_the_model_finds_has_a_scheme(seed: int, cells: int, colors: int) -> None:
-    """The painting read off the model, made canonical, is a scheme with no more segments."""
-    instance = planar_graph(seed, cells, cells + 4, colors)
-    graph = graph_of(instance)
-    built = full_model(graph, color_regions(instance))
-    solver = cp_model.CpSolver()
-    solver.parameters.num_workers = 1
-    # Any division will do, not just the best: sub-cells to be dissolved are more likely then.
-    solver.parameters.stop_after_first_solution = True
-    solver.solve(built.model)
-    painting = canonical(graph, read_painting(graph, built.variables, solver))
-    report = check_division(instance, division_of(graph, painting))
-    assert report.is_scheme, (report.problems, report.not_canonical)
-    assert report.segments is not None and report.segments <= round(solver.objective_value)
+def at_random(graph: DartGraph, seed: int) -> Painting:
+    """Every sector in any color of its cell, and leaf darts attached to any sectors of their color.
+
+    A few colors are preferred, so that sub-cells have some darts.
+    """
+    rng = Random(seed)
+    sectors = sector_graph(graph)
+    preferred = [rng.random() for _ in range(1 + max(map(max, graph.colors)))]
+    colors = [
+        rng.choices(own := sorted(graph.colors[cell]), [preferred[c] for c in own])[0]
+        for cell in sectors.cell
+    ]
+    attached = {}
+    for leaf, hosts in sectors.hosts.items():
+        if own := [host for host in hosts if colors[host] == colors[leaf]]:
+            attached[leaf] = rng.choice(own)
+    return painting_of_sectors(sectors, colors, attached)
 
 
 @examples(40)
-@given(seed=SEEDS, cells=st.integers(2, 10), colors=st.integers(1, 4), chosen=st.integers(0, 99))
-def test_a_change_is_made_canonical_where_it_was_made(
-    seed: int, cells: int, colors: int, chosen: int
-) -> None:
-    """A cell of a scheme is cut off all round; only it and its neighbors are looked at again."""
-    instance = planar_graph(seed, cells, cells + 5, colors)
+@given(seed=SEEDS, cells=st.integers(2, 7), colors=st.integers(1, 4))
+def test_any_painting_has_a_scheme(seed: int, cells: int, colors: int) -> None:
+    """With no more segments than what it is made of."""
+    instance = planar_graph(seed, cells, cells + 4, colors)
     graph = graph_of(instance)
-    plan = tuple(PlannedSegment(region, region[1]) for region in color_regions(instance))
-    scheme = canonical(graph, route(refined(graph, 1), plan, 5, seed))
-    cell = chosen % len(scheme)
-    twins = {graph.darts[dart].twin for dart in graph.lists[cell]}
-    around = {cell, *(graph.darts[twin].cell for twin in twins)}
-    changed = [
-        [Block(b.color, b.darts - twins - set(graph.lists[cell])) for b in blocks]
-        for blocks in scheme
-    ]
-    changed = [[b for b in blocks if b.darts] or blocks[:1] for blocks in changed]
-    before = deepcopy(changed)
-    found = canonical(graph, changed, around)
-    assert changed == before
+    painting = at_random(graph, seed)
+    segments = len(segments_of(graph, painting))
+    found = canonical(graph, painting)
     report = check_division(instance, division_of(graph, found))
     assert report.is_scheme, (report.problems, report.not_canonical)
+    assert report.segments is not None and report.segments <= segments
+
+
+@examples(40)
+@given(seed=SEEDS, darts=st.integers(4, 9), loops=st.integers(2, 4), colors=st.integers(2, 4))
+def test_leaf_darts_are_drawn_with_seams(seed: int, darts: int, loops: int, colors: int) -> None:
+    """The checker, which knows seams only, sees a legal division with as many segments."""
+    instance = holes.holed(seed, darts, loops, colors)
+    every, once = loops_of(instance), dict.fromkeys(instance.live_edges, 1)
+    places = seam_places(instance, every)
+    graph = complete_graph(instance, once, every, places)
+    painting = canonical(graph, at_random(graph, seed))
+    made, found = seamed(instance, once, graph, painting, every, places)
+    report = check_division(instance, division_of(made, found), made.seams)
+    assert report.valid, report.problems
+    assert report.segments is not None
+    assert report.segments <= len(segments_of(graph, painting))
 
 
 def test_a_canonical_painting_has_no_idle_cuts_and_no_single_darts() -> None:

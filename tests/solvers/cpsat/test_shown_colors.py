@@ -1,4 +1,4 @@
-"""Rule 5 cell after cell, beside the test of whole paintings."""
+"""Rule 5 cell after cell, beside the checker, which looks at whole divisions."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import rooms
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from cellcolor.checker.scheme_rules import on_loops, unavoidable_join_on_loops
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER
-from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
-from cellcolor.solvers.cpsat.model.painting import Block
-from cellcolor.solvers.cpsat.schemes.cell_divisions import ZERO, Blocks, divisions
-from cellcolor.solvers.cpsat.schemes.shown_colors import Choices, choices_with, shown_in_cell
-from cellcolor.solvers.cpsat.schemes.zero_darts import zeros_can_differ
+from cellcolor.solvers.cpsat.cell_divisions import ZERO, Blocks, divisions
+from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph
+from cellcolor.solvers.cpsat.painting import Block, division_of
+from cellcolor.solvers.cpsat.shown_colors import Choices, choices_with, shown_in_cell
 from examples import examples
 
 RED, BLUE = 0, 1
@@ -51,7 +51,8 @@ def some_choice_is_left(graph: DartGraph, blocks_of: Mapping[int, Blocks]) -> bo
 @given(seed=st.integers(0, 10**6), darts=st.integers(4, 7), loops=st.integers(1, 3))
 def test_choices_cell_by_cell_as_for_all_cells_at_once(seed: int, darts: int, loops: int) -> None:
     """Cells are divided at random, in any order."""
-    graph, rng = loops_apart(holes.holed(seed, darts, loops, colors=3)), random.Random(seed)
+    instance, rng = holes.holed(seed, darts, loops, colors=3), random.Random(seed)
+    graph = loops_apart(instance)
     state: dict[int, int] = {}
     blocks_of: dict[int, Blocks] = {}
     for cell in rng.sample(range(len(graph.lists)), len(graph.lists)):
@@ -63,7 +64,9 @@ def test_choices_cell_by_cell_as_for_all_cells_at_once(seed: int, darts: int, lo
         assume(every)
         blocks_of[cell] = rng.choice(every)
     painting = [[Block(c, set(own)) for c, own in blocks_of[n]] for n in range(len(blocks_of))]
-    assert some_choice_is_left(graph, blocks_of) == zeros_can_differ(graph, painting)
+    cells = on_loops(instance, division_of(graph, painting), (), 1)
+    stuck = unavoidable_join_on_loops(cells, lambda own: frozenset(instance.joinable(own[0])))
+    assert some_choice_is_left(graph, blocks_of) == (stuck is None)
 
 
 def test_zeros_on_different_loops_are_free_of_each_other() -> None:

@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
-from dart_graphs import graph_of
-from exhaustive_minima import optimal_schemes
 from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
-from ortools.sat.python import cp_model
 
 from cellcolor.checker.division import check_division
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import scheme_key
-from cellcolor.deadline import NEVER, Deadline
+from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
-from cellcolor.lab.families import blobs, hub, hub_minimum, planar_graph
+from cellcolor.lab.families import blobs, hub, hub_minimum
 from cellcolor.lab.families.registry import MEDIUM
-from cellcolor.solvers.bounds.cover import color_regions, set_cover
-from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
+from cellcolor.solvers.bounds.cover import set_cover
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import CpSatSolver
-from cellcolor.solvers.cpsat.model.full import add_hint, full_model
-from cellcolor.solvers.cpsat.model.painting import division_of, painting_of
-from cellcolor.solvers.cpsat.model_runs import Runner
-from cellcolor.solvers.cpsat.part_search import PartSearch
+from cellcolor.solvers.cpsat.painting import division_of
+from cellcolor.solvers.cpsat.part import Part
 from cellcolor.solvers.cpsat.parts import split
+from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.interface import Options, Start
 from examples import examples
 
@@ -72,23 +69,6 @@ def test_without_a_proof_for_the_surface_nothing_is_called_optimal() -> None:
     assert not found.proved_for_surface
 
 
-@examples(20)
-@given(seed=SEEDS, cells=st.integers(2, 6), colors=st.integers(2, 3))
-def test_fewest_cutting_paths(seed: int, cells: int, colors: int) -> None:
-    """Against all optimal schemes: a division with the fewest sub-cells is a scheme."""
-    instance = planar_graph(seed, cells, cells + 4, colors)
-    found = solve(instance, Options(fewest_cuts=True))
-    _, schemes = optimal_schemes(instance)
-    fewest = min(sum(len(subcells) - 1 for subcells in scheme) for scheme in schemes)
-    assert found.cutting_paths == found.cutting_paths_lower_bound == fewest
-
-
-def test_fewest_cutting_paths_of_the_cell_that_must_be_split() -> None:
-    instance = Instance.read(PAPER / "split-cell.json")
-    found = solve(instance, Options(fewest_cuts=True))
-    assert (found.segments, found.cutting_paths, found.cutting_paths_lower_bound) == (2, 1, 1)
-
-
 def test_a_start_is_kept_when_there_is_no_time() -> None:
     instance = decompose(blobs(3))
     good = solve(instance, Options())
@@ -96,23 +76,6 @@ def test_a_start_is_kept_when_there_is_no_time() -> None:
     start = Start(good.cells, good.seams)
     found = solve(instance, Options(deadline=Deadline.after(0.0), start=start))
     assert found.segments == good.segments
-
-
-def test_a_start_helps_the_model() -> None:
-    """Its hint is complete: the model's first solution is the division that was handed in."""
-    for seed in range(10):
-        instance = planar_graph(seed, 6, 10, 3)
-        best = solve(instance, Options())
-        assert best.cells is not None
-        graph = graph_of(instance)
-        built = full_model(graph, color_regions(instance))
-        add_hint(built, graph, painting_of(graph, best.cells))
-        solver = cp_model.CpSolver()
-        solver.parameters.num_workers = 1
-        solver.parameters.stop_after_first_solution = True
-        solver.parameters.fix_variables_to_their_hinted_value = True
-        assert solver.solve(built.model) in (cp_model.OPTIMAL, cp_model.FEASIBLE)
-        assert round(solver.objective_value) == best.segments
 
 
 def test_without_any_time_there_is_a_division_all_the_same() -> None:
@@ -161,61 +124,39 @@ def test_progress_comes_closer_and_never_passes_the_minimum() -> None:
     assert best == sorted(best, reverse=True) and best[-1] == minimum
 
 
-def _routed_rim() -> PartSearch:
-    """The one part of a surface with 26 cells at its rim, covered and routed."""
-    instance = decompose(MEDIUM["rim"](26))
-    (part,) = split(instance, drop_dominated(instance, left_out(instance)))
+def part_of(instance: Instance) -> Part:
+    """The largest part, covered."""
     options = Options()
-    search = PartSearch(part, options, Runner(options), lambda: None)
-    search.cover(NEVER)
-    search.planning.route(NEVER)
-    return search
+    part = Part(split(instance)[-1], options, Runner(options), lambda: None)
+    part.cover(NEVER)
+    return part
 
 
-def test_what_segments_avoid_proves_the_last_one() -> None:
-    """Where segments two and three at a time may pass through each other's cells, six are not ruled
-    out. But one that touches the cell between two of another color cannot get out of there."""
-    search = _routed_rim()
-    search.recolor_best(NEVER)
-    assert (search.segments, search.surface_bound) == (7, 6)
-    search.plan_harder(NEVER)
-    assert search.surface_bound == 7
-
-
-def test_a_turn_of_plans_ends_with_its_share_of_the_time() -> None:
-    search = _routed_rim()
-    search.plan_harder(Deadline.after(0))
-    assert not search.done
-
-
-def test_a_large_part_begins_with_local_search() -> None:
-    """Routes and windows came to 18 segments of this graph in minutes, 17 of the large part."""
-    instance = Instance.read(INSTANCES / "hard" / "large_part_1.json")
-    *_, part = split(instance, drop_dominated(instance, left_out(instance)))
-    options = Options()
-    search = PartSearch(part, options, Runner(options), lambda: None)
-    assert search.large
-    search.cover(NEVER)
-    search.begin_large(NEVER)
-    assert search.bound <= search.segments < 17
-    graph, painting = search.best
+@pytest.mark.parametrize(
+    ("instance", "most"),
+    [
+        (decompose(MEDIUM["rim"](26)), None),
+        # By routes and windows it had 17 in minutes.
+        (Instance.read(INSTANCES / "hard" / "large_part_1.json"), 16),
+    ],
+    ids=["rim", "large part"],
+)
+def test_local_search_leaves_a_legal_division(instance: Instance, most: int | None) -> None:
+    part = part_of(instance)
+    before = part.segments
+    part.improve(0, NEVER)
+    graph, painting = part.best
     report = check_division(part.instance, division_of(graph, painting), seams=graph.seams)
     assert report.valid, report.problems
-    assert report.segments == search.segments
+    assert part.bound <= part.segments < before
+    assert report.segments == part.segments
+    assert most is None or part.segments <= most
 
 
-def test_a_small_part_is_improved_by_local_search_after_plans() -> None:
-    """Before plans its cells stay whole; afterwards what local search finds is a legal division."""
-    instance = decompose(MEDIUM["rim"](26))
-    (part,) = split(instance, drop_dominated(instance, left_out(instance)))
-    options = Options()
-    search = PartSearch(part, options, Runner(options), lambda: None)
-    search.cover(NEVER)
-    whole, before = search.best, search.segments
-    search.begin_large(NEVER)
-    assert search.best is whole
-    search.recolor_best(NEVER)
-    graph, painting = search.best
-    report = check_division(part.instance, division_of(graph, painting), seams=graph.seams)
-    assert report.valid, report.problems
-    assert search.bound <= report.segments == search.segments < before
+def test_a_step_ends_with_its_share_of_the_time() -> None:
+    part = part_of(decompose(MEDIUM["rim"](26)))
+    known = part.segments, part.bound
+    for step in (partial(part.separate, 0.5), partial(part.improve, 0)):
+        with pytest.raises(OutOfTime):
+            step(deadline=Deadline.after(0))
+    assert not part.done and (part.segments, part.bound) == known

@@ -1,0 +1,119 @@
+"""The complete model of an instance, in hand: to be extended, exported, or solved as it is."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from importlib.metadata import version
+from math import ceil, isfinite
+
+from ortools.sat.python import cp_model
+
+from cellcolor.data.bounds import Bound
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Division, Seam
+from cellcolor.deadline import NEVER, Deadline, OutOfTime
+from cellcolor.solvers.bounds.cover import color_regions
+from cellcolor.solvers.bounds.reductions import enough_crossings
+from cellcolor.solvers.cpsat.dart_graph import complete_graph
+from cellcolor.solvers.cpsat.drawing import seamed
+from cellcolor.solvers.cpsat.formulation import SectorModel
+from cellcolor.solvers.cpsat.painting import Block, canonical, division_of
+from cellcolor.solvers.cpsat.parts import loops_of, seam_places
+from cellcolor.solvers.cpsat.runner import Runner
+from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
+
+
+class CompleteModel(SectorModel):
+    """The formulation of a whole instance.
+
+    Args:
+        instance: the instance.
+        strands: of each live edge; 1 in the search space ``paper``.
+        groups: the redundant groups of constraints; None for all of them.
+        deadline: of building it.
+
+    Attributes:
+        instance: the instance.
+        strands: of each live edge.
+
+    Raises:
+        InputError: there is no such group.
+        TooLarge: there are too many sectors, or strands of seams.
+        OutOfTime: the deadline came first.
+    """
+
+    def __init__(
+        self,
+        instance: Instance,
+        strands: int = 1,
+        groups: Collection[str] | None = None,
+        deadline: Deadline = NEVER,
+    ) -> None:
+        self.instance, self.strands = instance, strands
+        self._loops = loops_of(instance)
+        self._places = seam_places(instance, self._loops)
+        self._each = dict.fromkeys(instance.live_edges, strands)
+        self._graph = complete_graph(instance, self._each, self._loops, self._places)
+        super().__init__(self._graph, color_regions(instance), groups, deadline)
+        self.hint(self._whole())
+
+    def read(self, solver: cp_model.CpSolver) -> tuple[Division, tuple[Seam, ...]]:
+        """The division that a solver has found, and the seams that its darts refer to."""
+        painting = canonical(self._graph, self.painting(solver))
+        graph, painting = seamed(
+            self.instance, self._each, self._graph, painting, self._loops, self._places
+        )
+        return division_of(graph, painting, self.strands), graph.seams
+
+    def _whole(self) -> list[list[Block]]:
+        """Every cell painted whole, each in the color of its largest color region."""
+        size = {(cell, color): len(cells) for color, cells in self.regions for cell in cells}
+        chosen = [
+            max(cell.colors, key=lambda color, cell=cell: size[cell.id, color])  # type: ignore[misc]
+            for cell in self.instance.cells
+        ]
+        return canonical(self._graph, [[Block(color, set())] for color in chosen])
+
+
+class CompleteModelSolver:
+    """Builds the complete model, solves it once, and does nothing else."""
+
+    abilities = Abilities(search_spaces=("paper", "surface"), several_loops=True)
+
+    @property
+    def version(self) -> str:
+        """The version of OR-Tools."""
+        return f"OR-Tools {version('ortools')}"
+
+    def minimize(
+        self, instance: Instance, options: Options, progress: OnProgress | None = None
+    ) -> Answer:
+        """A division with the fewest segments, or the best found before the deadline."""
+        if not instance.cells:
+            return Answer((), (), ())
+        try:
+            built = CompleteModel(instance, options.strands, deadline=options.deadline)
+        except OutOfTime:
+            return Answer(None, (), ())
+        runner = Runner(options)
+        solver = runner.portfolio(options.deadline)
+        found: list[int] = []
+
+        def watch(segments: int) -> None:
+            found.append(segments)
+            if progress is not None:
+                progress(segments, 0)
+
+        status = runner.solve(solver, built.model, watch)
+        division: Division | None = None
+        seams: tuple[Seam, ...] = ()
+        if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+            division, seams = built.read(solver)
+        bounds = [Bound("cover", built.fewest_regions, "surface")]
+        if isfinite(solver.best_objective_bound):
+            bound = ceil(solver.best_objective_bound - 1e-6)
+            colors = [frozenset(cell.colors) for cell in instance.cells]
+            if all(n <= options.strands for n in enough_crossings(instance, colors).values()):
+                bounds.append(Bound("crossings", bound, "surface"))
+            bounds.append(Bound("model", bound, "strands"))
+        return Answer(division, seams, tuple(bounds), (), built.size)

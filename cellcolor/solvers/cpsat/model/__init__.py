@@ -1,1 +1,0 @@
-"""The CP-SAT models, and what they are made of: dart graphs with strands and seams."""

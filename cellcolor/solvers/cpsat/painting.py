@@ -1,0 +1,222 @@
+"""A colored division of a dart graph, and its canonical form, the scheme."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from cellcolor.data.cells_and_edges import DartName, strand_of
+from cellcolor.data.solution import Division, number_segments
+from cellcolor.solvers.cpsat.dart_graph import DartGraph
+from cellcolor.union_find import UnionFind
+
+
+@dataclass(slots=True)
+class Block:
+    """A sub-cell: its color, and its darts in state 1."""
+
+    color: int
+    darts: set[int]
+
+
+Painting = list[list[Block]]
+"""The sub-cells of each cell; a cell without darts in state 1 has one without darts."""
+
+
+def division_of(
+    graph: DartGraph, painting: Sequence[Iterable[Block]], strands: int = 1
+) -> Division:
+    """The painting as a solution writes it, with a given number of strands for every edge."""
+    seams = {seam.id for seam in graph.seams}
+
+    def name(dart: int) -> DartName:
+        signed, strand = graph.darts[dart].name
+        return signed if strands == 1 and abs(signed) not in seams else (signed, strand)
+
+    blocks = [
+        [(block.color, tuple(name(dart) for dart in sorted(block.darts))) for block in cell]
+        for cell in painting
+    ]
+    return number_segments(blocks)
+
+
+def painting_of(graph: DartGraph, division: Division) -> Painting:
+    """A solution's division on a graph that has the strands it names, or more."""
+    return [
+        [
+            Block(s.color, {graph.number_of[strand_of(dart)] for dart in s.darts})
+            for s in cell.subcells
+        ]
+        for cell in division
+    ]
+
+
+def segments_of(graph: DartGraph, painting: Painting) -> list[set[int]]:
+    """The cells that each segment touches."""
+    blocks = [block for cell in painting for block in cell]
+    cell_of = [number for number, cell in enumerate(painting) for _ in cell]
+    holder = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
+    reached = [-1] * len(blocks)
+    segments: list[set[int]] = []
+    for first in range(len(blocks)):
+        if reached[first] >= 0:
+            continue
+        reached[first] = len(segments)
+        segments.append({cell_of[first]})
+        stack = [first]
+        while stack:
+            for dart in blocks[stack.pop()].darts:
+                other = holder[graph.darts[dart].twin]
+                if reached[other] < 0:
+                    reached[other] = reached[first]
+                    segments[-1].add(cell_of[other])
+                    stack.append(other)
+    return segments
+
+
+def canonical(
+    graph: DartGraph, painting: Painting, changed: Iterable[int] | None = None
+) -> Painting:
+    """Make a scheme of a legal painting, with no more segments (docs/semantics.md, section 3).
+
+    Throughout, a dart in state 0 shows the color of the sub-cell before it in cyclic order; a loop
+    without darts in state 1 lies in the first sub-cell of its cell. These are repeated, cell by
+    cell, until none changes anything:
+
+    1. An edge in state 0 that shows one joinable color on both sides becomes joined.
+    2. A cutting path between equal colors goes.
+    3. A sub-cell with a single dart beside others goes. It ends its segment, so that the segment
+       stays in one piece without it.
+
+    None of them adds segments. The first two only add joins or remove sub-cells; the third removes
+    a join and a sub-cell, so the process ends. On a graph without seams there are no more cutting
+    paths than before either (docs/semantics/schemes.md).
+
+    Args:
+        painting: what is legal on it.
+        changed: the cells in which it is not a scheme's yet; None for all of them, and to work on
+            the painting's own blocks. Cells that stay as they are keep their lists of blocks.
+    """
+    made: dict[int, _Cell] = {}
+
+    def at(number: int) -> _Cell:
+        if number not in made:
+            own = painting[number]
+            if changed is not None:
+                own = [Block(block.color, set(block.darts)) for block in own]
+            made[number] = _Cell(graph.loops[number], own)
+        return made[number]
+
+    first = range(len(painting)) if changed is None else sorted(changed)
+    waiting = dict.fromkeys(reversed(first))
+    while waiting:
+        number, _ = waiting.popitem()
+        cell = at(number)
+        for dart in graph.lists[number]:
+            if dart in cell.block_of:
+                continue
+            twin = graph.darts[dart].twin
+            beyond = graph.darts[twin].cell
+            one, its = cell.shown(dart), at(beyond).shown(twin)
+            if one.color == its.color and one.color in graph.darts[dart].colors:
+                cell.add(dart, one)
+                at(beyond).add(twin, its)
+                if len(graph.loops[beyond]) > 1:
+                    waiting[beyond] = None  # another sub-cell may be its first one now
+        cell.merge()
+        single = cell.superfluous()
+        if single is not None:
+            twin = graph.darts[single].twin
+            beyond = graph.darts[twin].cell
+            cell.remove(single)
+            at(beyond).remove(twin)
+            waiting[number] = waiting[beyond] = None
+    found = list(painting)
+    for number, cell in made.items():
+        found[number] = cell.blocks()
+    return found
+
+
+class _Cell:
+    """One cell's border, each dart in state 1 with its block."""
+
+    def __init__(self, loops: Sequence[Sequence[int]], blocks: Sequence[Block]) -> None:
+        self._loops = loops
+        self.block_of: dict[int, Block] = {}
+        self.own = blocks[0]
+        for block in blocks:
+            for dart in block.darts:
+                self.block_of[dart] = block
+        self._shown: dict[int, Block] | None = None
+
+    def shown(self, dart: int) -> Block:
+        """The block that a dart in state 0 shows: the last one met before it."""
+        if self._shown is None:
+            self._shown = {}
+            first = self.blocks()[0]
+            for loop in self._loops:
+                joined = (self.block_of[dart] for dart in reversed(loop) if dart in self.block_of)
+                last = next(joined, first)
+                for place in loop:
+                    last = self.block_of.get(place, last)
+                    self._shown[place] = last
+        return self._shown[dart]
+
+    def merge(self) -> None:
+        """Undo cutting paths between equal colors: successive darts, and unconnected loops."""
+        for loop in self._loops:
+            joined = [dart for dart in loop if dart in self.block_of]
+            for dart, following in zip(joined, joined[1:] + joined[:1], strict=True):
+                self._unite(self.block_of[dart], self.block_of[following])
+        if len(self._loops) > 1:
+            self._merge_unconnected()
+
+    def _merge_unconnected(self) -> None:
+        """Make one of two blocks of one color that no chain of loops and blocks connects."""
+        connected: UnionFind[int] = UnionFind()
+        for loop in self._loops:
+            connected.union(*(id(self.block_of[dart]) for dart in loop if dart in self.block_of))
+        first: dict[int, list[Block]] = {}
+        for block in self.blocks():
+            same = first.setdefault(block.color, [])
+            other = next((o for o in same if connected[id(o)] != connected[id(block)]), None)
+            if other is None:
+                same.append(block)
+            else:
+                connected.union(id(other), id(block))
+                self._unite(other, block)
+
+    def _unite(self, one: Block, other: Block) -> None:
+        if one is not other and one.color == other.color:
+            one.darts |= other.darts
+            for moved in other.darts:
+                self.block_of[moved] = one
+            self._shown = None
+
+    def superfluous(self) -> int | None:
+        """The only dart of a block beside others, if there is such a block."""
+        single = next((dart for dart, b in self.block_of.items() if len(b.darts) < 2), None)
+        if single is None or all(b is self.block_of[single] for b in self.block_of.values()):
+            return None
+        return single
+
+    def add(self, dart: int, block: Block) -> None:
+        """Put a dart in state 1 into the block that it showed; its loop shows what it did."""
+        block.darts.add(dart)
+        self.block_of[dart] = block
+        if len(self._loops) > 1:
+            self._shown = None
+
+    def remove(self, dart: int) -> None:
+        """Put a dart in state 0."""
+        block = self.block_of.pop(dart)
+        block.darts.discard(dart)
+        if not self.block_of:
+            self.own = block
+        self._shown = None
+
+    def blocks(self) -> list[Block]:
+        """The blocks with darts, in the order of their first dart; one without if there is none."""
+        darts = (dart for loop in self._loops for dart in loop)
+        found = {id(b): b for dart in darts if (b := self.block_of.get(dart)) is not None}
+        return list(found.values()) or [self.own]

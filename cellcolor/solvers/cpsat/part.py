@@ -1,0 +1,273 @@
+"""A part of the instance: its best division so far, what is proved of it, and the steps to more.
+
+A part is what live edges connect (``parts``). Each step takes a deadline, and raises ``OutOfTime``
+when that comes first; what it has found by then is kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from math import ceil, isfinite
+from random import Random
+
+from ortools.sat.python import cp_model
+
+from cellcolor.data.solution import ModelSize, Seam
+from cellcolor.deadline import Deadline
+from cellcolor.errors import TooLarge
+from cellcolor.solvers.bounds.cover import Region, color_regions, greedy_strangers, set_cover
+from cellcolor.solvers.bounds.reductions import enough_crossings
+from cellcolor.solvers.cpsat.dart_graph import DartGraph, complete_graph, dart_graph, widened
+from cellcolor.solvers.cpsat.drawing import moved, seamed
+from cellcolor.solvers.cpsat.exact_shapes import exact_minimum
+from cellcolor.solvers.cpsat.formulation import SectorModel
+from cellcolor.solvers.cpsat.local_search import recolor
+from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, segments_of
+from cellcolor.solvers.cpsat.parts import ConnectedPart
+from cellcolor.solvers.cpsat.runner import Runner
+from cellcolor.solvers.cpsat.segment_plans import Planner, SegmentPlan, Undecided
+from cellcolor.solvers.interface import Options
+
+FEW_STRANDS = 2
+"""Strands of a seam in local search."""
+
+MOST_RINGS = 3
+"""Rings of sectors in local search, one more from turn to turn. More leave more room."""
+
+FEW_MOVES, MOVES = 5, 300
+"""Moves of local search in vain, for each segment, before nothing better is expected: from a start
+of which there are many, and from the best division."""
+
+LEVELS = (1, 0.1), (2, 0.2), (0, 0.7)
+"""How much of a linear relaxation plans are made with, and the share of the effort. Plans of many
+segments are ruled out by a full relaxation, by a small one or by none, hardly ever by all."""
+
+
+class Part:
+    """The best division of a part so far, and its proved bounds.
+
+    Attributes:
+        instance: the part's.
+        cells: the cell of the whole instance that each cell of the part is.
+        segments: of the best division.
+        bound: no division in the search space has fewer segments.
+        surface_bound: no division of the surface has fewer.
+        by: what proved ``bound``: the kind of bound.
+        best: the best division, on its dart graph.
+        cover_bound: the size of a smallest cover, or what is proved of it.
+        planner: what plans its segments; None before.
+        model_size: how large the complete model is, if it was solved.
+        notes: models that were not built, and why, a sentence each.
+    """
+
+    def __init__(
+        self, part: ConnectedPart, options: Options, runner: Runner, report: Callable[[], None]
+    ) -> None:
+        self._part, self._options, self._runner, self._report = part, options, runner, report
+        self.instance, self.cells = part.instance, part.cells
+        self._colors = tuple(frozenset(cell.colors) for cell in part.instance.cells)
+        self._enough = enough_crossings(part.instance, self._colors)
+        self._once = dict.fromkeys(self._enough, 1)
+        self.bound = self.surface_bound = len(greedy_strangers(part.instance))
+        self.by = "strangers"
+        self.cover_bound = self.bound
+        self.planner: Planner | None = None
+        self.model_size: ModelSize | None = None
+        self.notes: list[str] = []
+        self._planned: Sequence[Region] = self.regions
+        self._running: int | None = None
+        self.best = self._whole([min(own) for own in self._colors])
+        self.segments = len(segments_of(*self.best))
+
+    @property
+    def done(self) -> bool:
+        """Whether the best division is proved, or there is no time left."""
+        return self.segments == self.bound or self._runner.over
+
+    @property
+    def known(self) -> int:
+        """Segments of the best division, that of a model that is still running included."""
+        return self.segments if self._running is None else min(self.segments, self._running)
+
+    @property
+    def proved_for_surface(self) -> int:
+        """No division of the surface has fewer segments.
+
+        Where more corridors across an edge are never needed, the bound is one for the surface.
+        """
+        wide = all(enough <= self._options.strands for enough in self._enough.values())
+        return self.bound if wide else self.surface_bound
+
+    @cached_property
+    def regions(self) -> list[Region]:
+        """The color regions: for each color the sets of cells that it connects."""
+        return color_regions(self.instance)
+
+    def cover(self, deadline: Deadline) -> None:
+        """A smallest set cover: the first bound, and a division with every cell painted whole."""
+        found = set_cover(self.instance, deadline=deadline)
+        self.cover_bound = max(self.bound, found.bound)
+        self._planned = found.regions
+        self._raise_to(found.bound, "cover", for_surface=True)
+        self._keep(*self._covered(found.regions))
+
+    def solve_exactly(self, deadline: Deadline) -> None:
+        """The minimum of a part whose shape allows a recursion (``exact_shapes``)."""
+        found = exact_minimum(self._part, deadline)
+        if found is None:
+            return
+        self._keep(self._narrow, canonical(self._narrow, found.painting(self._narrow)))
+        if max(self._widest.values(), default=1) == 1:
+            self._raise_to(found.segments, "exact", for_surface=False)
+
+    def improve(self, turn: int, deadline: Deadline) -> None:
+        """Local search from cells painted whole, then from the best division.
+
+        What it finds differs from start to start, so the regions of the last cover or plan come in
+        another order each time.
+        """
+        rng = Random(self._options.seed + turn)
+        rings = 1 + turn % MOST_RINGS
+        start = self._covered(rng.sample(self._planned, len(self._planned)))
+        self._recolor(*start, rng, deadline, FEW_MOVES, rings)
+        self._recolor(*self.best, rng, deadline, MOVES, rings)
+
+    def separate(self, effort: float, deadline: Deadline) -> None:
+        """Plan segments that respect separating pairs, each plan a start of local search.
+
+        Where there is no plan, the bound rises. It ends with a plan in which no two segments are
+        known to cross.
+
+        Args:
+            effort: deterministic seconds for a plan.
+        """
+        if self.planner is None:
+            self.planner = Planner(self.instance, self.regions, self.cover_bound, self._planned)
+
+        def solve(model: cp_model.CpModel) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
+            for level, share in LEVELS:
+                solver = self._runner.single(share * effort, deadline)
+                solver.parameters.linearization_level = level
+                status = self._runner.solve(solver, model)
+                if status != cp_model.UNKNOWN:
+                    break
+            return solver, status
+
+        while not self.done:
+            deadline.check()
+            try:
+                plan = self.planner.plan(self.bound, solve)
+            except Undecided:
+                return
+            if plan is None:
+                self._raise_to(self.bound + 1, "conflicts", for_surface=True)
+                continue
+            self._begin_with(plan, deadline)
+            if self.done or not self.planner.find_separations(plan, deadline):
+                return
+
+    def solve_model(self, deadline: Deadline) -> None:
+        """The complete model, hinted with the best division and bounded by what is proved.
+
+        With several strands an edge, the model with one comes first: it nearly always has a
+        division that meets the bound.
+        """
+        if self._once != self._widest:
+            self._minimize(self._once, deadline.share(1 / 4))
+        if not self.done:
+            self._minimize(self._widest, deadline)
+
+    def _minimize(self, strands: dict[int, int], deadline: Deadline) -> None:
+        part = self._part
+        try:
+            graph = complete_graph(self.instance, strands, part.loops, part.seams)
+            built = SectorModel(graph, self.regions, deadline=deadline)
+        except TooLarge as error:
+            self.notes.append(str(error))
+            return
+        built.model.add(built.segments >= self.bound)
+        built.hint(canonical(graph, moved(*self.best, graph)))
+        solver = self._runner.portfolio(deadline)
+        if final := strands == self._widest:
+            solver.best_bound_callback = self._proved
+        status = self._runner.solve(solver, built.model, self._watch)
+        self._watch(None)
+        if final and isfinite(solver.best_objective_bound):
+            self.model_size = built.size
+            self._proved(solver.best_objective_bound)
+        if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+            painting = canonical(graph, built.painting(solver))
+            self._keep(*seamed(self.instance, strands, graph, painting, part.loops, part.seams))
+
+    def _proved(self, bound: float) -> None:
+        self._raise_to(ceil(bound - 1e-6), "model", for_surface=False)
+
+    @property
+    def _widest(self) -> dict[int, int]:
+        """As many strands of each live edge as were asked for and can be needed."""
+        most = self._options.strands
+        return {edge: int(min(most, enough)) for edge, enough in self._enough.items()}
+
+    @cached_property
+    def _narrow(self) -> DartGraph:
+        """The part's darts with one strand of each edge, and few of each seam."""
+        part = self._part
+        seams: tuple[Seam, ...] = widened(
+            self.instance, self._colors, self._once, part.loops, part.seams, FEW_STRANDS
+        )
+        return dart_graph(self.instance, self._colors, self._once, seams, part.loops)
+
+    def _begin_with(self, plan: SegmentPlan, deadline: Deadline) -> None:
+        """Local search from cells that are painted whole, as a plan has them."""
+        self._planned = [segment.region for segment in plan]
+        color_of = {cell: segment.region[0] for segment in plan for cell in segment.cells}
+        start = self._whole([color_of[cell.id] for cell in self.instance.cells])
+        self._keep(*start)
+        if not self.done:
+            self._recolor(*start, Random(self._options.seed), deadline, FEW_MOVES)
+
+    def _covered(self, regions: Sequence[Region]) -> tuple[DartGraph, Painting]:
+        """Every cell painted whole in the color of the last region that has it."""
+        color_of = {cell: color for color, cells in regions for cell in cells}
+        return self._whole([color_of[cell.id] for cell in self.instance.cells])
+
+    def _whole(self, colors: Sequence[int]) -> tuple[DartGraph, Painting]:
+        """Every cell painted whole."""
+        return self._narrow, canonical(self._narrow, [[Block(color, set())] for color in colors])
+
+    def _recolor(
+        self,
+        graph: DartGraph,
+        painting: Painting,
+        rng: Random,
+        deadline: Deadline,
+        moves: int,
+        rings: int = 1,
+    ) -> None:
+        """What local search makes of a canonical painting, kept if it is the best so far."""
+        for better in recolor(graph, painting, rng, self.bound, deadline, moves, rings):
+            self._keep(graph, better)
+            if self.done:
+                return
+
+    def _keep(self, graph: DartGraph, painting: Painting) -> None:
+        """A canonical painting, which is kept if it is the best so far."""
+        segments = len(segments_of(graph, painting))
+        if segments < self.segments:
+            self.segments, self.best = segments, (graph, painting)
+            self._report()
+
+    def _raise_to(self, bound: int, kind: str, *, for_surface: bool) -> None:
+        """A bound that is proved, in the search space alone or for any division of the surface."""
+        if bound > self.bound:
+            self.bound, self.by = bound, kind
+            self._report()
+        if for_surface:
+            self.surface_bound = max(self.surface_bound, bound)
+
+    def _watch(self, segments: int | None) -> None:
+        """What the running model has found so far, None when it has ended."""
+        self._running = segments
+        if segments is not None:
+            self._report()

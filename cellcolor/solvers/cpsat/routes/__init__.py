@@ -1,1 +1,0 @@
-"""Divisions without a model of the whole: segments are planned, then routed."""

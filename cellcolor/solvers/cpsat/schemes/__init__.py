@@ -1,1 +1,0 @@
-"""All optimal schemes of an instance."""

@@ -1,0 +1,306 @@
+"""The sector graph: every cell cut into rings of sectors around a center.
+
+A division of the cells is a coloring of the sectors, and cutting paths are the borders between
+colors. They cannot cross, because the graph is drawn in the plane of each cell. Segments are the
+connected sets of sectors of one color. The model (``formulation``) and local search both work on
+this graph.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
+
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import TooLarge
+from cellcolor.solvers.cpsat.dart_graph import DartGraph
+from cellcolor.solvers.cpsat.painting import Block, Painting
+
+MANY_DARTS = 100
+"""In a cell with more darts, the longest chain of chords is taken to be half as many."""
+
+
+class Link(NamedTuple):
+    """Two neighboring sectors.
+
+    Attributes:
+        one: the sector whose side 0 the link is.
+        other: the sector whose side 1 it is.
+        dart: the dart of ``one`` across which the other one lies; -1 if both are of one cell.
+    """
+
+    one: int
+    other: int
+    dart: int
+
+
+@dataclass(frozen=True)
+class SectorGraph:
+    """Sectors, and the links between them in their order around each sector.
+
+    A cell with n darts on its cyclic list has rings of n sectors, one for each dart, and a center.
+    Without rings it is all center. A **leaf dart** is the only live dart of a further loop of its
+    cell. It has a sector of its own, which may be attached to any one other sector of the cell,
+    since nothing keeps the loop from lying beside any sub-cell.
+
+    Attributes:
+        graph: the dart graph. The first loop of a cell is the cyclic list, each other one has a
+            single dart, a leaf dart.
+        nodes: the sectors of each cell: ring by ring from the border inwards, the center, and then
+            the sectors of leaf darts.
+        rings: how many rings each cell has.
+        cell: the cell of each sector.
+        at: the sector at each dart.
+        links: the links that are drawn.
+        around: for each sector its links counterclockwise, each with the side of it.
+        hosts: for each sector of a leaf dart, those that it may be attached to.
+    """
+
+    graph: DartGraph
+    nodes: list[range] = field(default_factory=list)
+    rings: list[int] = field(default_factory=list)
+    cell: list[int] = field(default_factory=list)
+    at: list[int] = field(default_factory=list)
+    links: list[Link] = field(default_factory=list)
+    around: list[list[tuple[int, int]]] = field(default_factory=list)
+    hosts: dict[int, list[int]] = field(default_factory=dict)
+
+    @cached_property
+    def beside(self) -> list[list[int]]:
+        """The neighbors of each sector in its cell."""
+        found: list[list[int]] = [[] for _ in self.cell]
+        for one, other, dart in self.links:
+            if dart < 0 and other not in found[one]:
+                found[one].append(other)
+                found[other].append(one)
+        return found
+
+    @cached_property
+    def across(self) -> list[list[tuple[int, frozenset[int]]]]:
+        """The sectors across the darts at each sector, and the colors joinable there."""
+        found: list[list[tuple[int, frozenset[int]]]] = [[] for _ in self.cell]
+        for number, dart in enumerate(self.graph.darts):
+            found[self.at[number]].append((self.at[dart.twin], dart.colors))
+        return found
+
+    def center(self, cell: int) -> int:
+        """The center of a cell, or the first leaf dart's sector if all of its darts are leaves."""
+        own = self.nodes[cell]
+        count = len(self.graph.loops[cell][0]) if self.graph.loops[cell] else 0
+        return own[count * self.rings[cell]]
+
+    @cached_property
+    def faces(self) -> tuple[list[tuple[int, int]], int]:
+        """The faces on both sides of each link, and how many faces there are.
+
+        A face is a closed walk that leaves each sector by the link after the one it came by.
+        """
+        following = {
+            half: after
+            for own in self.around
+            for half, after in zip(own, own[1:] + own[:1], strict=True)
+        }
+        face: dict[tuple[int, int], int] = {}
+        count = 0
+        for first in following:
+            if first in face:
+                continue
+            half = first
+            while half not in face:
+                face[half] = count
+                half = following[half[0], 1 - half[1]]
+            count += 1
+        return [(face[number, 0], face[number, 1]) for number in range(len(self.links))], count
+
+
+def sector_graph(
+    graph: DartGraph,
+    most_rings: int | None = None,
+    deadline: Deadline = NEVER,
+    most_colors: int | None = None,
+) -> SectorGraph:
+    """Cut every cell into sectors, with as many rings as every scheme can be drawn in.
+
+    Let m be the length of the longest chain of nested chords between two darts of a common color.
+    Then (m - 1) / 2 rings, rounded up, are enough (docs/formulation.md).
+
+    Args:
+        graph: the first loop of each cell is a cyclic list, the others are leaf darts.
+        most_rings: no cell gets more rings; some schemes may then have no room.
+        most_colors: of all sectors together, each in any color of its cell.
+
+    Raises:
+        TooLarge: there would be more; what is too large is not made.
+    """
+    made = SectorGraph(graph)
+    made.at.extend([0] * len(graph.darts))
+    left = most_colors
+    for cell, loops in enumerate(graph.loops):
+        deadline.check()
+        rings = _rings_of(made, cell, loops, most_rings)
+        if left is not None:
+            count = len(loops[0]) * rings + len(loops) if loops else 1
+            left -= count * len(graph.colors[cell])
+            if left < 0:
+                raise TooLarge(
+                    "The model was not built: "
+                    f"it would need more than {most_colors} literals for the colors of sectors."
+                )
+        _add_sectors(made, cell, loops, rings)
+    halves: list[list[tuple[int, int]]] = [[] for _ in made.cell]
+    number_of = {}
+    for number, dart in enumerate(graph.darts):
+        one, other = made.at[number], made.at[dart.twin]
+        if number < dart.twin and one != other:
+            number_of[number], number_of[dart.twin] = (len(made.links), 0), (len(made.links), 1)
+            made.links.append(Link(one, other, number))
+    for cell, loops in enumerate(graph.loops):
+        for loop in loops[1:]:
+            halves[made.at[loop[0]]] = [number_of[d] for d in loop if d in number_of]
+        _add_rings(made, cell, loops[0] if loops else (), number_of, halves)
+    made.around.extend(halves)
+    return made
+
+
+def _rings_of(
+    made: SectorGraph, cell: int, loops: Sequence[Sequence[int]], most_rings: int | None
+) -> int:
+    if len(made.graph.colors[cell]) < 2 or not loops:
+        return 0
+    rings = _enough_rings([made.graph.darts[dart].colors for dart in loops[0]], len(loops) > 1)
+    return rings if most_rings is None else min(rings, most_rings)
+
+
+def _add_sectors(made: SectorGraph, cell: int, loops: Sequence[Sequence[int]], rings: int) -> None:
+    darts = loops[0] if loops else ()
+    leaves = [loop[0] for loop in loops[1:]]
+    first, count = len(made.cell), len(darts)
+    centers = 1 if darts or not leaves else 0
+    end = first + count * rings + centers + len(leaves)
+    made.nodes.append(range(first, end))
+    made.rings.append(rings)
+    made.cell.extend([cell] * (end - first))
+    ring = [first + place if rings else first for place in range(count)]
+    for dart, node in zip(darts, ring, strict=True):
+        made.at[dart] = node
+    hosts = sorted({*ring, *range(first, first + centers)}) if not rings else ring
+    for node, dart in enumerate(leaves, start=end - len(leaves)):
+        made.at[dart] = node
+        made.hosts[node] = [*hosts, *range(end - len(leaves), node)]
+
+
+def _add_rings(
+    made: SectorGraph,
+    cell: int,
+    darts: Sequence[int],
+    number_of: dict[int, tuple[int, int]],
+    halves: list[list[tuple[int, int]]],
+) -> None:
+    """Link the sectors of a cell, and put all links in order around them."""
+    first, count, rings = made.nodes[cell][0], len(darts), made.rings[cell]
+    if not rings:
+        if darts:
+            halves[first] = [number_of[dart] for dart in darts if dart in number_of]
+        return
+    center = first + count * rings
+
+    def link(one: int, other: int) -> int:
+        made.links.append(Link(one, other, -1))
+        return len(made.links) - 1
+
+    outward = [number_of.get(dart) for dart in darts]
+    for ring in range(rings):
+        row = [first + ring * count + place for place in range(count)]
+        along = [link(node, row[(place + 1) % count]) for place, node in enumerate(row)]
+        inward = [link(node, node + count if ring + 1 < rings else center) for node in row]
+        for place, node in enumerate(row):
+            out = outward[place]
+            halves[node] = [
+                *([] if out is None else [out]),
+                (along[place], 0),
+                (inward[place], 0),
+                (along[place - 1], 1),
+            ]
+        outward = [(number, 1) for number in inward]
+    halves[center] = [half for half in outward if half is not None]
+
+
+def _enough_rings(colors: Sequence[frozenset[int]], leaves: bool) -> int:
+    """How many rings every scheme can be drawn in.
+
+    Args:
+        colors: those joinable at each dart of a cyclic list.
+        leaves: whether the cell has leaf darts. With one of these, a single dart of the list is
+            enough for a sub-cell at either end of a chain.
+    """
+    if len(colors) < 2:
+        return 0
+    longest = _longest_chain(colors) if len(colors) <= MANY_DARTS else len(colors) // 2
+    if leaves:
+        longest = min(longest + 2, len(colors) // 2 + 1)
+    return longest // 2
+
+
+def _longest_chain(colors: Sequence[frozenset[int]]) -> int:
+    """The most chords between darts of a common color of which each separates its neighbors.
+
+    Cut the cyclic list anywhere: ``most[first][end]`` is the length of the longest chain of nested
+    chords between the darts from the first to the end. Chords that are nested in a cut list are
+    those of a chain, wherever the list is cut.
+    """
+    count = len(colors)
+    share = [[not one.isdisjoint(other) for other in colors] for one in colors]
+    longest = 0
+    for cut in range(count):
+        most = [[0] * (count + 1) for _ in range(count + 2)]
+        for size in range(2, count + 1):
+            for first in range(count - size + 1):
+                last = first + size - 1
+                inside = most[first + 1][last]
+                best = max(most[first + 1][last + 1], most[first][last])
+                if share[(cut + first) % count][(cut + last) % count]:
+                    best = max(best, 1 + inside)
+                most[first][last + 1] = best
+        longest = max(longest, most[0][count])
+        if longest == count // 2:
+            break
+    return longest
+
+
+def painting_of_sectors(
+    sectors: SectorGraph, colors: Sequence[int], attached: Mapping[int, int] | None = None
+) -> Painting:
+    """The division in which each sector has the given color.
+
+    Args:
+        attached: the sector that each leaf dart's sector is attached to, if any.
+    """
+    graph, beside = sectors.graph, sectors.beside
+    held: dict[int, list[int]] = {}
+    for leaf, host in (attached or {}).items():
+        held.setdefault(host, []).append(leaf)
+        held.setdefault(leaf, []).append(host)
+    block_of: dict[int, Block] = {}
+    painting: Painting = []
+    for nodes in sectors.nodes:
+        blocks: list[Block] = []
+        for node in nodes:
+            if node in block_of:
+                continue
+            block_of[node] = Block(colors[node], set())
+            blocks.append(block_of[node])
+            reached = [node]
+            for place in reached:
+                for other in (*beside[place], *held.get(place, ())):
+                    if other not in block_of and colors[other] == colors[node]:
+                        block_of[other] = block_of[node]
+                        reached.append(other)
+        painting.append(blocks)
+    for number, dart in enumerate(graph.darts):
+        node, beyond = sectors.at[number], sectors.at[dart.twin]
+        color = colors[node]
+        if color == colors[beyond] and color in dart.colors:
+            block_of[node].darts.add(number)
+    return [[block for block in cell if block.darts] or cell[:1] for cell in painting]

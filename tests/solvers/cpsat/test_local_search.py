@@ -1,0 +1,164 @@
+"""Local search: what comes of it is a legal division with fewer segments, counted right."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from random import Random
+
+import networkx as nx
+import pytest
+from dart_graphs import graph_of
+from exhaustive_minima import minimum
+from hypothesis import given
+from hypothesis import strategies as st
+from library import INSTANCES
+from rooms import hub
+
+import cellcolor
+from cellcolor.checker.division import check_division
+from cellcolor.data.instance import Instance
+from cellcolor.deadline import NEVER, Deadline, OutOfTime
+from cellcolor.decomposition import decompose
+from cellcolor.lab.families import planar_graph, voronoi
+from cellcolor.solvers.cpsat.dart_graph import dart_graph, seams_of
+from cellcolor.solvers.cpsat.drawing import sector_colors
+from cellcolor.solvers.cpsat.local_search import Recoloring, recolor
+from cellcolor.solvers.cpsat.painting import (
+    Block,
+    Painting,
+    canonical,
+    division_of,
+    segments_of,
+)
+from cellcolor.solvers.cpsat.sectors import SectorGraph, painting_of_sectors, sector_graph
+from examples import examples
+
+SEEDS = st.integers(0, 10**6)
+
+
+def whole(instance: Instance) -> Painting:
+    """Every cell painted in the first of its colors."""
+    painting: Painting = [[Block(min(cell.colors), set())] for cell in instance.cells]
+    return canonical(graph_of(instance), painting)
+
+
+def numbers(instance: Instance, seed: int, enough: int = 0) -> list[int]:
+    """Segments of every cell painted whole, and of each better division, all of them legal."""
+    graph, start = graph_of(instance), whole(instance)
+    found = []
+    for painting in [start, *recolor(graph, start, Random(seed), enough, NEVER, 30)]:
+        report = check_division(instance, division_of(graph, painting), seams=graph.seams)
+        assert report.valid, report.problems
+        found.append(report.segments)
+    return found
+
+
+def components(sectors: SectorGraph, colors: list[int]) -> int:
+    """The connected sectors of one color, by another program."""
+    painted = nx.Graph()
+    painted.add_nodes_from(range(len(colors)))
+    for node, (beside, across) in enumerate(zip(sectors.beside, sectors.across, strict=True)):
+        joined = [*beside, *(other for other, joinable in across if colors[node] in joinable)]
+        painted.add_edges_from((node, other) for other in joined if colors[node] == colors[other])
+    return nx.number_connected_components(painted)
+
+
+@examples(30)
+@given(seed=SEEDS, cells=st.integers(1, 6), colors=st.integers(1, 4))
+def test_each_division_is_legal_and_better(seed: int, cells: int, colors: int) -> None:
+    instance = planar_graph(seed, cells, cells + 4, colors)
+    found = numbers(instance, seed)
+    assert all(after < before for before, after in pairwise(found))
+    assert found[-1] >= minimum(instance)
+
+
+@examples(40)
+@given(
+    seed=SEEDS, cells=st.integers(2, 25), colors=st.integers(2, 6), rings=st.sampled_from((0, 1, 2))
+)
+def test_segments_are_counted_right(seed: int, cells: int, colors: int, rings: int) -> None:
+    """However segments came apart and together, there are as many as another program counts."""
+    instance = planar_graph(seed, cells, 2 * cells, colors)
+    graph = graph_of(instance)
+    sectors = sector_graph(graph, rings)
+    search = Recoloring(sectors, sector_colors(sectors, whole(instance))[0], Random(seed))
+    for _ in range(60):
+        search.move()
+        assert all(
+            color in graph.colors[cell]
+            for color, cell in zip(search.current, sectors.cell, strict=True)
+        )
+        assert search.segments == components(sectors, search.current)
+        assert search.fewest <= search.segments
+    assert search.fewest == components(sectors, search.best)
+
+
+@examples(20)
+@given(seed=SEEDS)
+def test_without_rings_cells_stay_whole(seed: int) -> None:
+    """Each division is legal and better all the same, and may be where the next search begins."""
+    instance = planar_graph(seed, 12, 24, 4)
+    graph, painting = graph_of(instance), whole(instance)
+    known = len(segments_of(graph, painting))
+    for rings in (0, 1, 2):
+        for better in recolor(graph, painting, Random(seed), 0, NEVER, 10, rings):
+            painting = better
+            report = check_division(instance, division_of(graph, painting), seams=graph.seams)
+            assert report.valid and report.segments < known
+            known = report.segments
+            assert rings or all(len(blocks) == 1 for blocks in painting)
+
+
+@pytest.mark.parametrize("petals", [(0, 1, 0, 1), (0, 1, 0, 1, 0, 1), (0, 1, 2, 0, 1, 2)])
+def test_a_hub_is_cut_between_its_petals(petals: tuple[int, ...]) -> None:
+    """Each petal alone to begin with, save those of the hub's color."""
+    assert numbers(hub(*petals), 0)[-1] == minimum(hub(*petals))
+
+
+def test_a_surface_with_holes_and_cracks() -> None:
+    surface = voronoi(1, "annulus", 12, 20, 6, scattered=True, cracks=2, holes=2)
+    assert len(numbers(decompose(surface), 0)) > 1
+
+
+def test_a_seed_says_what_is_found() -> None:
+    instance = planar_graph(3, 25, 50, 5)
+    sectors = sector_graph(graph_of(instance), 1)
+    start = sector_colors(sectors, whole(instance))[0]
+    one, other, third = (Recoloring(sectors, start, Random(seed)) for seed in (1, 1, 2))
+    for _ in range(200):
+        one.move()
+        other.move()
+        third.move()
+    assert one.current == other.current != third.current
+
+
+def test_few_enough_segments_end_it() -> None:
+    instance = planar_graph(3, 25, 50, 5)
+    first, second, *_ = numbers(instance, 0)
+    assert numbers(instance, 0, enough=first) == [first]
+    assert numbers(instance, 0, enough=second) == [first, second]
+
+
+def test_no_time_leaves_what_there_was() -> None:
+    instance = hub(0, 1, 0, 1)
+    with pytest.raises(OutOfTime):
+        next(recolor(graph_of(instance), whole(instance), Random(0), 0, Deadline.after(0), 30))
+
+
+def test_a_part_of_340_cells_is_better_than_it_was_by_windows() -> None:
+    """Routes and windows came to 18 segments in minutes (until 2026-11-24)."""
+    instance = cellcolor.read(INSTANCES / "hard" / "large_part_1.json")
+    assert isinstance(instance, Instance)
+    colors = [frozenset(cell.colors) for cell in instance.cells]
+    once = {edge.id: 1 for edge in instance.edges}
+    graph = dart_graph(instance, colors, once, seams_of(instance, colors, once, 2))
+    sectors = sector_graph(graph, 1)
+    painted = [min(graph.colors[cell]) for cell in sectors.cell]
+    search = Recoloring(sectors, painted, Random(0))
+    for _ in range(400):
+        search.move()
+    assert search.fewest < 18
+    division = canonical(graph, painting_of_sectors(sectors, search.best))
+    report = check_division(instance, division_of(graph, division), seams=graph.seams)
+    assert report.valid, report.problems
+    assert report.segments <= search.fewest
