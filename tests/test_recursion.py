@@ -20,7 +20,7 @@ ALLOWED = {
     ("frontend/arm/link_mesh.py", "_below"): "the folders looked into, _DEEPEST",
     ("questions/explaining.py", "_cutting"): "how often a list of things can be halved",
     ("frontend/tables.py", "_settled"): "how deeply TOML nests, which its reader limits",
-    ("solvers/cpsat/schemes/cell_divisions.py", "decide"): "the darts of a cell, MOST_DARTS",
+    ("solvers/cpsat/cell_divisions.py", "decide"): "the darts of a cell, MOST_DARTS",
 }
 """Functions that call themselves, and what the depth is limited by."""
 

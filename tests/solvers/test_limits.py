@@ -20,7 +20,6 @@ from cellcolor.errors import TooLarge
 from cellcolor.lab.families import blobs, hub, planar_graph
 from cellcolor.lab.families.hubs import hub_with_loops
 from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_cover
-from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import CompleteModel, formulation
 from cellcolor.solvers.cpsat.parts import split
@@ -76,16 +75,6 @@ def test_a_cover_without_time_is_a_cover_all_the_same(seed: int, cells: int, col
     hasty, exact = set_cover(instance, deadline=OVER), set_cover(instance)
     assert set().union(*(touched for _, touched in hasty.regions)) == set(range(cells))
     assert 1 <= hasty.bound <= exact.bound == len(exact.regions) <= len(hasty.regions)
-
-
-def test_without_time_no_color_is_dropped() -> None:
-    instance = planar_graph(3, 8, 12, 4)
-    assert drop_dominated(instance, left_out(instance, OVER)) == tuple(
-        frozenset(c.colors) for c in instance.cells
-    )
-    assert drop_dominated(instance, left_out(instance)) != drop_dominated(
-        instance, left_out(instance, OVER)
-    )
 
 
 # --- deadlines ------------------------------------------------------------------------------------

@@ -79,20 +79,13 @@ def color_regions(
     return sorted(regions, key=lambda region: (region[0], min(region[1])))
 
 
-def set_cover(
-    instance: Instance,
-    colors: Sequence[frozenset[int]] | None = None,
-    deadline: Deadline = NEVER,
-) -> Cover:
+def set_cover(instance: Instance, deadline: Deadline = NEVER) -> Cover:
     """A smallest set of color regions that touches every cell; its size is a lower bound.
 
     The regions of all segments together touch every cell, in both search spaces. After the deadline
     it is the best cover and bound so far.
-
-    Args:
-        colors: the colors each cell may be painted in, if not all of its own.
     """
-    regions = color_regions(instance, colors)
+    regions = color_regions(instance)
     touching = _touching(regions, len(instance.cells))
     greedy = _greedy(regions, touching)
     found = _smallest(touching, EFFORT, deadline, greedy)

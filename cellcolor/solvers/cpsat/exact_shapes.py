@@ -1,4 +1,4 @@
-"""Exact minima of parts whose shape allows a recursion (docs/bounds/exact.md, with the proofs).
+"""Exact minima of parts whose shape allows a recursion (docs/bounds.md, with the proofs).
 
 - **Forests**: no cycle of cells and live edges, one live loop a cell. A recursion over the tree
   asks of each subtree how many segments it needs, and in which colors joining it saves one.

@@ -1,4 +1,4 @@
-"""The ways to divide a hub all of whose darts have one color (docs/bounds/exact.md, "Hubs").
+"""The ways to divide a hub all of whose darts have one color (docs/bounds.md, "Hubs").
 
 A **petal** is a neighbor of a hub, or several that are connected in any case. Some are **shared**
 with other hubs, or met twice by this one. To all others it only matters which shared petals a way

@@ -2,12 +2,13 @@
 
 A cell that a segment enters can be covered whole without another segment: uncovered pieces of it
 go, one by one, to a segment beside them in the same cell. So only whole cells are left out. In the
-model such a cell is a segment of its own that is not counted.
+model such a cell has a color of its own, which is joinable nowhere, and its root is not counted.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 from math import ceil
 
 from ortools.sat.python import cp_model
@@ -41,29 +42,37 @@ def least_left_out(
     Raises:
         OutOfTime: the deadline came while the model was built.
     """
+    nothing = len(instance.colors)
     try:
-        built = CompleteModel(instance, deadline=options.deadline)
+        built = CompleteModel(_with_color(instance, required), deadline=options.deadline)
     except TooLarge:
         return None
-    model, v, sectors = built.model, built.variables, built.sectors
-    left_out = [model.new_bool_var(f"left out[{cell.id}]") for cell in instance.cells]
-    for (here, there), literal in v.parent.items():
-        own, other = sectors.cell[here], sectors.cell[there]
-        if own != other:
-            model.add_implication(literal, ~left_out[own])
-            model.add_implication(literal, ~left_out[other])
-    for cell, literal in enumerate(left_out):
-        # Its root is its center, as nothing outside is a parent.
-        roots = [v.root[sectors.center(cell), c] for c in instance.cells[cell].colors]
-        model.add_bool_or([~literal, *roots])
-        if cell in required:
-            model.add(literal == 0)
-    model.add(built.segments - sum(left_out) <= segments)
-    model.minimize(sum(w * literal for w, literal in zip(weights, left_out, strict=True)))
+    model, roots = built.model, built.variables.root
+    left_out = {
+        built.sectors.cell[sector]: literal
+        for (sector, color), literal in roots.items()
+        if color == nothing
+    }
+    model.add(built.segments - sum(left_out.values()) <= segments)
+    model.minimize(sum(weights[cell] * literal for cell, literal in left_out.items()))
     runner = Runner(options)
     solver = runner.portfolio(options.deadline)
     status = runner.solve(solver, model)
     if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         return None
-    found = [cell for cell, literal in enumerate(left_out) if solver.boolean_value(literal)]
+    found = [cell for cell, literal in left_out.items() if solver.boolean_value(literal)]
     return frozenset(found), sum(weights) - ceil(solver.best_objective_bound - 1e-6)
+
+
+def _with_color(instance: Instance, required: Collection[int]) -> Instance:
+    """The instance with one more color, which all cells but some have, and no edge joins."""
+    nothing = len(instance.colors)
+    return replace(
+        instance,
+        colors=(*instance.colors, "-".join(("nothing", *instance.colors))),  # no other name
+        cells=tuple(
+            cell if cell.id in required else replace(cell, colors=(*cell.colors, nothing))
+            for cell in instance.cells
+        ),
+        edges=tuple(replace(e, colors=instance.joinable(e.id)) for e in instance.edges),
+    )

@@ -139,7 +139,7 @@ def sector_graph(
     left = most_colors
     for cell, loops in enumerate(graph.loops):
         deadline.check()
-        rings = _rings_of(made, cell, loops, most_rings)
+        rings = _rings_of(graph, loops, most_rings)
         if left is not None:
             count = len(loops[0]) * rings + len(loops) if loops else 1
             left -= count * len(graph.colors[cell])
@@ -164,12 +164,11 @@ def sector_graph(
     return made
 
 
-def _rings_of(
-    made: SectorGraph, cell: int, loops: Sequence[Sequence[int]], most_rings: int | None
-) -> int:
-    if len(made.graph.colors[cell]) < 2 or not loops:
+def _rings_of(graph: DartGraph, loops: Sequence[Sequence[int]], most_rings: int | None) -> int:
+    joinable = frozenset[int]().union(*(graph.darts[d].colors for loop in loops for d in loop))
+    if len(joinable) < 2:  # sub-cells that have darts in state 1 would be of one color
         return 0
-    rings = _enough_rings([made.graph.darts[dart].colors for dart in loops[0]], len(loops) > 1)
+    rings = _enough_rings([graph.darts[dart].colors for dart in loops[0]], len(loops) > 1)
     return rings if most_rings is None else min(rings, most_rings)
 
 

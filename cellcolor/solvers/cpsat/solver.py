@@ -196,7 +196,7 @@ class _Search:
 
     def _whole_graph(self, seams: Sequence[Seam]) -> DartGraph:
         strands = dict.fromkeys(self._instance.live_edges, self._options.strands)
-        return dart_graph(self._instance, self._own, strands, seams, self._loops)
+        return dart_graph(self._instance, strands, seams, self._loops)
 
     def _bounds(self) -> tuple[Bound, ...]:
         """The proved bounds of the number of segments; those of parts add up.

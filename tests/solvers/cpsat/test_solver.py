@@ -136,7 +136,7 @@ def part_of(instance: Instance) -> Part:
     ("instance", "most"),
     [
         (decompose(MEDIUM["rim"](26)), None),
-        # By routes and windows it had 17 in minutes.
+        # By solving one window after another it had 17 in minutes.
         (Instance.read(INSTANCES / "hard" / "large_part_1.json"), 16),
     ],
     ids=["rim", "large part"],
