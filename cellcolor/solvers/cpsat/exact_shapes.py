@@ -128,14 +128,14 @@ def _tree_minimum(part: _Part) -> Exact | None:
         darts = _down(part.loops[cell], dart)
         below = sum(fewest[d] for d in darts)
         sets = [saving[d] for d in darts if saving[d]]
-        least = below - best_grouping(sets).links if sets else below + 1
+        least = below - best_grouping(sets).connections if sets else below + 1
         if cell == 0:
             break
         fewest[-dart] = least
         saving[-dart] = frozenset(
             color
             for color in part.joinable[dart]
-            if below - best_grouping([frozenset((color,)), *sets]).links == least - 1
+            if below - best_grouping([frozenset((color,)), *sets]).connections == least - 1
         )
     areas: dict[int, list[tuple[int, list[int]]]] = {}
     joined: dict[int, int] = {}
