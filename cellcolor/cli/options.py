@@ -52,6 +52,18 @@ class _Positive(click.FloatRange):
         return number
 
 
+class Price(click.FloatRange):
+    """A price in a range; click takes NaN for one in any range."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        number = float(super().convert(value, param, ctx))
+        if math.isnan(number):
+            self.fail(f"{value} is not in the range {self.min}<=x<={self.max}.", param, ctx)
+        return number
+
+
 class _Numbers(click.ParamType):  # type: ignore[type-arg]
     """Numbers with commas between.
 

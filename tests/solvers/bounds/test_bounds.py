@@ -115,7 +115,7 @@ def test_more_crossings_than_enough_gain_nothing(seed: int, cells: int, colors: 
     found = solve(instance, Options(search_space="surface", strands=strands))
     assert found.proved_for_surface
     wider = Options(search_space="surface", strands=strands + 1)
-    assert solve(instance, wider, "dfs").segments == found.segments
+    assert solve(instance, wider, "dfs-cover").segments == found.segments
 
 
 @examples(12)
