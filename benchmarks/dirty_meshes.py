@@ -82,8 +82,6 @@ def _faults(facts: dict[str, object]) -> str:
         )
         if name in wrong.split() and number and not (name == "components" and number == 1):
             found.append(f"{name.replace('_', ' ')} {number:,}")
-    if facts["crossings"] is None:
-        found.append("crossings not looked for")
     return ", ".join(found) or "nothing"
 
 
