@@ -21,7 +21,7 @@ from cellcolor.cli.options import (
 from cellcolor.cli.terminal import say, say_lines
 from cellcolor.errors import InputError, system_errors
 from cellcolor.files.writing import PNG, SVG, Output, write
-from cellcolor.solvers.registry import DEFAULT, REFERENCE
+from cellcolor.solvers.registry import DEFAULT, PAPERS, REFERENCE
 
 if TYPE_CHECKING:
     from cellcolor.lab.runs.row import Row
@@ -56,7 +56,7 @@ def bench() -> None:
     "solvers",
     metavar="NAME[@WORKERS]",
     multiple=True,
-    default=(REFERENCE, DEFAULT),
+    default=(PAPERS, REFERENCE, DEFAULT),
     show_default=True,
     help="Solver; repeat the option for several.",
 )

@@ -39,7 +39,7 @@ from cellcolor.files.writing import (
     write,
 )
 from cellcolor.pictures.registry import PICTURES
-from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, REFERENCE, solver_names
+from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, PAPERS, REFERENCE, solver_names
 
 if TYPE_CHECKING:
     from cellcolor.data.instance import Instance
@@ -124,8 +124,8 @@ def _build_surface(source: Path, output: Path) -> Instance:
     callback=one_of(solver_names),
     default=DEFAULT,
     show_default=True,
-    help=f"{', '.join(OWN_NAMES)}, or what another package registers. {REFERENCE} is the paper's "
-    "depth-first search, for small instances.",
+    help=f"{', '.join(OWN_NAMES)}, or what another package registers. {PAPERS} is the paper's "
+    f"depth-first search, for small instances, and {REFERENCE} the same search with a bound.",
 )
 @click.option(
     "--search-space",

@@ -10,9 +10,10 @@ import numpy as np
 
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
+from cellcolor.data.prices import check_price
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
-from cellcolor.questions.front import Front, FrontChoice, FrontPoint, check_price
+from cellcolor.questions.front import Front, FrontChoice, FrontPoint
 from cellcolor.questions.places import Place, chosen
 from cellcolor.solvers.interface import Options
 

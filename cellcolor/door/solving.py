@@ -103,7 +103,8 @@ def solve(
 
     Args:
         source: what to solve: its file, its shipped name (``cellcolor.library``), the value.
-        solver: the solver's name; ``dfs`` is the paper's depth-first search, for small instances.
+        solver: the solver's name; ``dfs`` is the paper's depth-first search, for small instances,
+            and ``dfs-cover`` the same search with a bound.
         search_space: ``paper`` for no more than one corridor of a color across an edge, ``surface``
             for several.
         strands: how many, in the search space ``surface``; None for 2.

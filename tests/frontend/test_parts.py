@@ -48,7 +48,6 @@ SEGMENTS = {
     "sphere": 4,
     "torus": 4,
 }
-TOO_LARGE_FOR_DFS = {"sphere"}  # it finds no division within 100 s
 SLOW = pytest.mark.slow
 QUICK = ("saddle", "perforated_sheet")
 
@@ -113,11 +112,11 @@ def test_no_part_is_forgotten() -> None:
 
 @pytest.mark.parametrize("name", some_slow(SEGMENTS))
 def test_minima(name: str) -> None:
-    """Two solvers where both finish, and a bound of neither: colors that reach every point."""
+    """Two solvers, and a bound of neither: colors that reach every point."""
     result = build_surface(PARTS / f"{name}.toml")
     assert result.report.reachable_area_m2 > 0.84 * result.report.area_m2
     instance = decompose(result.surface)
-    for solver in ("cp-sat",) if name in TOO_LARGE_FOR_DFS else ("cp-sat", "dfs"):
+    for solver in ("cp-sat", "dfs-cover"):
         solution = solve(instance, Options(deadline=Deadline.after(60), workers=2), solver)
         assert solution.status == "optimal" and solution.proved_for_surface
         assert solution.segments == SEGMENTS[name]
