@@ -23,7 +23,7 @@ from cellcolor.frontend import Scene
 from cellcolor.frontend.build import labelled
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import with_finer_borders
+from cellcolor.frontend.stages import judged
 
 SCENES = sorted((Path(__file__).parents[1] / "instances" / "scenes").glob("*.toml"))
 VERTICES, FARTHEST_M = 300, 0.15
@@ -40,8 +40,8 @@ def row(file: Path, placements: int, rounds: int) -> tuple[float, float, str]:
         for shift in shifts:
             place = scene.placement.varied(position_m=tuple((here + shift).tolist()))
             started = time.process_time()
-            stages = with_finer_borders(prepared.at(place), StageClock(NEVER, None))
-            surface, _ = labelled(*stages, {})
+            there = prepared.at(place)
+            surface, _ = labelled(there, judged(there, StageClock(NEVER, None)), {})
             built = time.process_time()
             cellcolor.solve(surface, workers=1)
             proving += time.process_time() - built

@@ -71,8 +71,6 @@ from cellcolor.questions.placements import PlacedMinimum as PlacedMinimum
 from cellcolor.questions.placements import PlacementMap as PlacementMap
 from cellcolor.questions.placements import Placements as Placements
 from cellcolor.questions.places import WorldBox as WorldBox
-from cellcolor.questions.refinement import RefinedStep as RefinedStep
-from cellcolor.questions.refinement import Refinement as Refinement
 from cellcolor.questions.set_ups import SetUp as SetUp
 from cellcolor.questions.set_ups import SetUpPlan as SetUpPlan
 from cellcolor.tool_paths.cover import Covered as Covered
