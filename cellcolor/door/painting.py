@@ -98,8 +98,7 @@ def cover(
     Args:
         surface: the painted surface, or its file; or what ``cellcolor.paint`` returns.
         plan: one color for each vertex of it, or the file of that; None with a ``Painted``.
-        pattern: ``contour``, ``spiral``, ``back-and-forth`` or ``tree``, or what another package
-            registers.
+        pattern: ``contour`` or ``back-and-forth``, or what another package registers.
         spacing_m: desired distance between neighboring passes, m.
         tool_radius_m: of the tool's footprint, m.
         normals: (n, 3) outward unit normals at the vertices; those of the mesh if it is None.
