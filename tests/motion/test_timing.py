@@ -11,12 +11,10 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 from cellcolor.data.trajectory import Trajectory
-from cellcolor.motion.timing import Speeds, _swept, least_jerks, timed, within_jerks
+from cellcolor.motion.timing import Speeds, _swept, timed
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.joint_motion import JointLimits, judge_joints
 from examples import examples
-
-CYCLE = 0.008  # s
 
 
 @examples(12)
@@ -129,59 +127,3 @@ def test_a_long_way_without_samples_has_no_fault_of_its_own() -> None:
     faults = FaultList(drive, timed=True)
     judge_joints(drive, points, limits, True, faults)
     assert not faults.counts
-
-
-@examples(12)
-@given(st.integers(0, 10**6))
-def test_jerks_are_kept_for_whatever_samples_a_cycle_apart(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    turns = rng.uniform(-0.02, 0.02, size=(12, 2))
-    joints = np.cumsum(np.repeat(turns, rng.integers(3, 40, 12), axis=0), axis=0)
-    speeds = Speeds(np.array([1.0, 2.0]), np.array([8.0, 5.0]), np.array([200.0, 90.0]))
-    free = timed(joints, speeds)
-    times = within_jerks(free, joints, speeds)
-    assert (np.diff(times) >= np.diff(free) * (1 - 1e-12)).all()
-    at = np.concatenate([times[0] - CYCLE * np.array([3, 2, 1]), times])
-    at = np.concatenate([at, times[-1] + CYCLE * np.array([1, 2, 3])])
-    rows = np.concatenate([joints[[0, 0, 0]], joints, joints[[-1, -1, -1]]])
-    for begin in range(len(at) - 3):
-        for _ in range(3):
-            chosen = [begin]
-            while len(chosen) < 4:
-                beyond = np.flatnonzero(at >= at[chosen[-1]] + CYCLE)
-                if not len(beyond):
-                    break
-                chosen.append(int(beyond[min(int(rng.integers(0, 3)), len(beyond) - 1)]))
-            if len(chosen) == 4:
-                # The leading coefficient of the cubic through four points is a sixth of its jerk.
-                cubic = np.linalg.solve(np.vander(at[chosen] - at[begin]), rows[chosen])
-                assert (6 * np.abs(cubic[0]) <= speeds.jerks * 1.01).all()
-
-
-def test_a_cubic_has_its_jerk_and_no_limit_changes_no_time() -> None:
-    times = np.sort(np.random.default_rng(3).uniform(0.0, 1.0, 60))
-    found, first, last = least_jerks(times, (7 * times**3 - times)[:, None])
-    inner = (first > 2) & (last < 57)
-    assert inner.any()
-    assert found[inner] == pytest.approx(42.0)
-    speeds = Speeds(np.ones(1), np.ones(1))
-    assert within_jerks(times, times[:, None], speeds) is times
-
-
-def test_close_samples_do_not_slow_down_where_jerks_are_limited() -> None:
-    """A second's way, sampled every millisecond: a slowdown over a few samples would be a jerk."""
-    joints = np.linspace(0.0, 2.0, 1000)[:, None]
-    speeds = Speeds(np.array([3.0]), np.array([8.0]), np.array([250.0]))
-    # By a jerk of 250 rad/s³, 8 rad/s² take 32 ms to build up: an S-curve would take that longer.
-    free = timed(joints, speeds)
-    assert within_jerks(free, joints, speeds)[-1] < 1.5 * free[-1]
-
-
-def test_sharp_bends_cost_little_where_jerks_are_limited() -> None:
-    """Only what is beside a bend gets slower."""
-    joints = 0.001 * np.abs(np.arange(-2000.0, 2001.0))[:, None]
-    speeds = Speeds(np.array([0.05]), np.array([8.0]), np.array([300.0]))
-    free = timed(joints, speeds)
-    times = within_jerks(free, joints, speeds)
-    assert free[-1] < times[-1] < free[-1] + 0.5
-    assert np.diff(times)[200:1800] == pytest.approx(0.02)
