@@ -129,6 +129,7 @@ def cover(
 
     from cellcolor.tool_paths.cover import check_spacing
     from cellcolor.tool_paths.cover import cover as cover_segments
+    from cellcolor.tool_paths.region import Segments
 
     report = check_plan(surface, plan)
     if not report.valid:
@@ -141,10 +142,7 @@ def cover(
     check_spacing(surface, segment_of, spacing_m)
     rows = surface.vertex_normals if normals is None else _unit_rows(normals, len(segment_of))
     return cover_segments(
-        surface,
-        segment_of,
-        colors,
-        rows,
+        Segments(surface, segment_of, colors, rows),
         pattern=pattern,
         spacing_m=spacing_m,
         tool_radius_m=tool_radius_m,

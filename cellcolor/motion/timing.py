@@ -62,7 +62,7 @@ def timed(
     for _ in range(_ROUNDS):
         squares = _swept(joints, least, cap, _MARGIN * speeds.accelerations)
         times = np.concatenate([[0.0], np.cumsum(least / np.sqrt(squares))])
-        excess = (accelerations(times, joints) / speeds.accelerations).max(axis=1)
+        excess = (accelerations(times, joints, speeds) / speeds.accelerations).max(axis=1)
         if excess.max() <= 1.0:
             return times
         slower = np.maximum(excess / _MARGIN, 1.0)
@@ -71,7 +71,7 @@ def timed(
     return np.asarray(times * np.sqrt(excess.max()))
 
 
-def accelerations(times: Array, joints: Array) -> Array:
+def accelerations(times: Array, joints: Array, speeds: Speeds) -> Array:
     """The least accelerations (k, joints) at the samples of a motion from rest to rest, rad/s^2.
 
     No smooth motion through the samples has less. Between neighboring steps it is the change of
@@ -79,17 +79,21 @@ def accelerations(times: Array, joints: Array) -> Array:
     is off (u + w) / 2, by r + s + t: within s of the middle step velocities differ by as at most,
     and their mean is at most as/4 off the middle of the first and the last, which are at most ar/2
     and at/2 off u and w.
+
+    Beside a step that takes long, a motion may leave the straight line by ``_BOW`` only, so a long
+    step has no more time for a change than the longest one that it can be left on.
     """
-    steps = np.diff(times)
-    velocity = np.diff(joints, axis=0) / steps[:, None]
+    passed = np.diff(times)[:, None]
+    longest = np.sqrt(8 * _BOW / speeds.accelerations)
     rest = np.zeros((1, joints.shape[1]))
-    change = np.diff(np.concatenate([rest, velocity, rest]), axis=0)
-    around = np.append(steps, 0.0) + np.insert(steps, 0, 0.0)
-    least = np.abs(change) / (around / 2)[:, None]
+    velocity = np.concatenate([rest, np.diff(joints, axis=0) / passed, rest])
+    beside, along = (
+        np.concatenate([rest, np.minimum(passed, most), rest]) for most in (longest, 2 * longest)
+    )
+    least = np.abs(np.diff(velocity, axis=0)) / ((beside[1:] + beside[:-1]) / 2)
     # Each step between its neighbors, rest at both ends; it counts at both of its samples.
-    padded = np.concatenate([rest, velocity, rest])
-    three = np.convolve(np.concatenate([[0.0], steps, [0.0]]), np.ones(3), "valid")
-    bent = np.abs(velocity - (padded[2:] + padded[:-2]) / 2) / (three / 4)[:, None]
+    three = (beside[2:] + along[1:-1] + beside[:-2]) / 4
+    bent = np.abs(velocity[1:-1] - (velocity[2:] + velocity[:-2]) / 2) / three
     least[:-1] = np.maximum(least[:-1], bent)
     least[1:] = np.maximum(least[1:], bent)
     return np.asarray(least)

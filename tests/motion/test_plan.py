@@ -129,7 +129,7 @@ def test_the_tool_touches_at_the_approach_speed(motion: Planned) -> None:
     setup = motion.prepared.setup.varied(motion={"approach_speed_m_per_s": 0.004})
     prepared = prepare(motion.prepared.scene.with_setup(setup))
     built = replace(motion.built, prepared=prepared)
-    slow = plan_motion(built, motion.painted, motion.normals).trajectory
+    slow = plan_motion(built, motion.painted).trajectory
     for trajectory, within in ((slow, True), (motion.plan.trajectory, False)):
         steps = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1)
         speed = steps / np.diff(trajectory.times)
@@ -169,7 +169,7 @@ def test_all_scenes_have_no_more_lift_offs_than_were_proved(name: str) -> None:
 
 @pytest.mark.parametrize("motion", ["wok_obstacle"], indirect=True)
 def test_the_same_scene_and_seed_give_the_same_trajectory(motion: Planned) -> None:
-    again = plan_motion(motion.built, motion.painted, motion.normals)
+    again = plan_motion(motion.built, motion.painted)
     assert again.trajectory == motion.plan.trajectory
     assert again.paths == motion.plan.paths
 
