@@ -23,6 +23,7 @@ from cellcolor.arrays import Array
 from cellcolor.frontend import Scene
 from cellcolor.frontend.prepared import prepare
 from cellcolor.tool_paths.cover import cover
+from cellcolor.tool_paths.region import Segments
 from cellcolor.tool_paths.registry import PATTERNS
 
 SCENES = Path(__file__).parents[1] / "instances" / "scenes"
@@ -78,8 +79,8 @@ def main() -> None:
             for pattern in PATTERNS:
                 begun = time.process_time()
                 found = cover(
-                    painted.surface, painted.segment_of, colors, normals, pattern=pattern,
-                    spacing_m=SPACING, tool_radius_m=RADIUS,
+                    Segments(painted.surface, painted.segment_of, colors, normals),
+                    pattern=pattern, spacing_m=SPACING, tool_radius_m=RADIUS,
                 )  # fmt: skip
                 spent = time.process_time() - begun
                 whole, each = found.in_all, found.measures
