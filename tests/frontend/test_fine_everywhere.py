@@ -1,4 +1,4 @@
-"""Fine at borders only is as good as fine everywhere (six scenes: ``benchmarks/adaptive.py``)."""
+"""Fine at borders only is as good as fine everywhere."""
 
 from __future__ import annotations
 
