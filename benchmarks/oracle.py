@@ -1,6 +1,6 @@
 """What the oracle for other planners finds: ``python benchmarks/oracle.py TABLE [COUNT]``.
 
-    faults    COUNT faults (1,000) planted in valid plans on 63 surfaces, 17 sorts in turn
+    faults    COUNT faults (1,000) planted in valid plans on 64 surfaces, 17 sorts in turn
     valid     COUNT valid plans (1,000) of six sorts on the same surfaces; every seventh is judged
               by an oracle whose time limit left its range open
     tampered  COUNT kept proofs (500) that somebody has changed, in 32 sorts in turn
