@@ -1,13 +1,11 @@
-"""Kill commands at random moments and look at what they leave: ``python benchmarks/kills.py [N]``.
+"""Commands killed at random moments, and what they leave.
 
-Each command is started N times (100) and gets SIGINT, SIGTERM and SIGKILL in turn, at moments drawn
-evenly from the time that it takes when left alone. Before each start the files that it is about to
-write are there in an older version. Afterwards every file has to be whole, old or new; after SIGINT
-and SIGTERM there is no temporary file, and the exit code is 3 with one line (or what the command
-itself says, where it came to its end before); after SIGKILL the same command is run to its end,
-which leaves all files new and no temporary file.
-
-Prints a Markdown table, and ends with exit code 1 if anything was otherwise.
+Each command gets SIGINT, SIGTERM and SIGKILL in turn, at moments drawn evenly from the time that it
+takes when left alone. Before each start the files that it is about to write are there in an older
+version. Afterwards every file has to be whole, old or new; after SIGINT and SIGTERM there is no
+temporary file, and the exit code is 3 with one line (or what the command itself says, where it came
+to its end before); after SIGKILL the same command is run to its end, which leaves all files new and
+no temporary file.
 """
 
 from __future__ import annotations
@@ -24,15 +22,14 @@ import sys
 import tempfile
 import time
 import zipfile
-from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 
 from cellcolor.cli import main as main_of_cellcolor
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
 
 SLOW = """
@@ -154,12 +151,8 @@ Say = Callable[[str], None]
 
 def kill_once(
     command: Command, number: signal.Signals, delay: float, model: Path, fault: Say
-) -> list[str]:
-    """Kill a command once, in a copy of a prepared folder.
-
-    Returns:
-        What happened, for the table.
-    """
+) -> None:
+    """Kill a command once, in a copy of a prepared folder."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name) / "run"
         shutil.copytree(model, folder)
@@ -171,20 +164,15 @@ def kill_once(
         code, lines = process.returncode, errors.decode().splitlines()
         new = contents(folder, command)
         changed = {output for output in command.outputs if new.get(output) != old.get(output)}
-        counted = []
         if number != signal.SIGKILL:
-            counted.append(ending(code, lines, changed, fault))
+            ending(code, lines, changed, fault)
             if strays(folder):
                 fault(f"strays {strays(folder)}")
-        elif strays(folder):
-            counted.append("strays of a kill")
         for output, content in new.items():
             if content != old.get(output) and not whole(output, content):
                 fault(f"{output} is not whole")
         if command.arguments[0] == "build" and changed:
-            counted.append(together(folder, command, changed, number, fault))
-        elif command.outputs:
-            counted.append("new" if changed else "old")
+            together(folder, command, changed, number, fault)
         if number == signal.SIGKILL:
             process = start(folder, command)
             process.communicate(timeout=300)
@@ -195,30 +183,28 @@ def kill_once(
             after = contents(folder, command)
             if any(after.get(output) == old.get(output) for output in command.outputs):
                 fault("old files after the run that followed a kill")
-        return counted
 
 
-def ending(code: int, lines: list[str], changed: set[str], fault: Say) -> str:
-    """What SIGINT or SIGTERM made of a command."""
+def ending(code: int, lines: list[str], changed: set[str], fault: Say) -> None:
+    """Look at what SIGINT or SIGTERM made of a command."""
     if code == 0:
-        return "came to its end"
-    if code in (-signal.SIGINT, -signal.SIGTERM):
+        return
+    if code in (-signal.SIGINT, -signal.SIGTERM):  # Python itself was starting
         if changed:
             fault(f"exit code {code} after files were written")
-        return "not yet begun"  # Python itself was starting
+        return
     if code != 3:
         fault(f"exit code {code}: {lines[-1:]}")
     if len(lines) > 1 or (lines and "interrupted" not in lines[0]):
         fault(f"exit code {code} with {lines}")
-    return "exit code 3"
 
 
 def together(
     folder: Path, command: Command, changed: set[str], number: signal.Signals, fault: Say
-) -> str:
-    """What became of the files of a build, some of which are new."""
+) -> None:
+    """Look at the files of a build, some of which are new: a mixture of two builds is refused."""
     if len(changed) == len(command.outputs):
-        return "new"
+        return
     if number != signal.SIGKILL:
         fault(f"of the files of a build only {sorted(changed)} are new")
     show = ["show", "w.json", "--reason", "-o", "reason.svg"]
@@ -226,19 +212,11 @@ def together(
         code = main_of_cellcolor(show)
     if code != 2 or "surface" not in errors.getvalue() or (folder / "reason.svg").exists():
         fault(f"a mixture is shown: {code} {errors.getvalue()}")
-    return "mixed, refused"
 
 
-def trial(
-    command: Command, count: int, seed: int, fault: Say
-) -> tuple[float, Mapping[str, Counter[str]]]:
-    """Kill a command ``count`` times.
-
-    Returns:
-        How long it takes when left alone, and what happened how often after each signal.
-    """
+def trial(command: Command, count: int, seed: int, fault: Say) -> None:
+    """Kill a command ``count`` times."""
     chance = random.Random(seed)
-    counts: dict[str, Counter[str]] = {number.name: Counter() for number in SIGNALS}
     with tempfile.TemporaryDirectory() as name:
         model = Path(name) / "model"
         model.mkdir()
@@ -258,40 +236,4 @@ def trial(
             def named(text: str, number: signal.Signals = number, delay: float = delay) -> None:
                 fault(f"{number.name} after {delay:.3f} s: {text}")
 
-            counts[number.name]["runs"] += 1
-            counts[number.name].update(kill_once(command, number, delay, model, named))
-    return seconds, counts
-
-
-COLUMNS = (
-    "runs",
-    "not yet begun",
-    "exit code 3",
-    "came to its end",
-    "old",
-    "new",
-    "mixed, refused",
-    "strays of a kill",
-)
-
-
-def main() -> int:
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
-    faults: list[str] = []
-    print(f"| command | seconds | signal | {' | '.join(COLUMNS)} | faults |")
-    print("|" + "---|" * (len(COLUMNS) + 4))
-    for name, command in COMMANDS.items():
-        own: list[str] = []
-        seconds, counts = trial(command, count, 1, own.append)
-        for number, counted in counts.items():
-            shown = " | ".join(str(counted[column]) for column in COLUMNS)
-            wrong = sum(fault.startswith(number) for fault in own)
-            print(f"| {name} | {seconds:.1f} | {number} | {shown} | {wrong} |", flush=True)
-        faults += [f"{name}: {fault}" for fault in own]
-    for fault in faults:
-        print(fault)
-    return bool(faults)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+            kill_once(command, number, delay, model, named)
