@@ -168,6 +168,8 @@ def test_the_caller_settles_what_is_doubtful() -> None:
     assert set(without.doubtful_edges) == {(0, 1), (0, 2), (0, 3)}
     assert without.surface.meta["doubtful_edges"] == [[0, 1], [0, 2], [0, 3]]
     assert "3 of 5 mesh edges doubtful (60.0%)" in str(without)
+    (note,) = cellcolor.solve(without.surface).solution.notes
+    assert "3 mesh edges of its surface are doubtful" in note
 
 
 def test_names_keep_configurations_apart() -> None:
