@@ -1,5 +1,7 @@
 # The public names. __init__.py reads them here: one a line, with the module that it comes from.
 
+from cellcolor.configurations.labelling import Labelling as Labelling
+from cellcolor.configurations.labelling import from_configurations as from_configurations
 from cellcolor.data.bounds import Bound as Bound
 from cellcolor.data.cells_and_edges import OUTSIDE as OUTSIDE
 from cellcolor.data.cells_and_edges import Cell as Cell
