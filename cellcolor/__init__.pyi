@@ -1,5 +1,7 @@
 # The public names. __init__.py reads them here: one a line, with the module that it comes from.
 
+from cellcolor.configurations.labelling import Labelling as Labelling
+from cellcolor.configurations.labelling import from_configurations as from_configurations
 from cellcolor.data.bounds import Bound as Bound
 from cellcolor.data.cells_and_edges import OUTSIDE as OUTSIDE
 from cellcolor.data.cells_and_edges import Cell as Cell
@@ -23,9 +25,6 @@ from cellcolor.deadline import Deadline as Deadline
 from cellcolor.deadline import OutOfTime as OutOfTime
 from cellcolor.door.asking import explain as explain
 from cellcolor.door.asking import tradeoff as tradeoff
-from cellcolor.door.comparing import ComparedArm as ComparedArm
-from cellcolor.door.comparing import Comparison as Comparison
-from cellcolor.door.comparing import compare as compare
 from cellcolor.door.drawing import Drawing as Drawing
 from cellcolor.door.drawing import show as show
 from cellcolor.door.extras import show_versions as show_versions

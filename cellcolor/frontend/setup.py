@@ -240,7 +240,8 @@ class Motion(Table):
     ``approach_speed_m_per_s`` at most, without it at ``speed_m_per_s``. It retracts by
     ``retract_m`` along the normal; between segments the arm keeps ``clearance_m`` from everything.
     A URDF has velocities, which ``joint_velocities_rad_per_s`` may lower, but no accelerations.
-    ``joint_jerks_rad_per_s3`` limits how fast accelerations change; without it nothing does.
+    ``joint_jerks_rad_per_s3`` is for judging: trajectories may not change accelerations faster.
+    Planned ones are not made to keep it.
     Lists of joints go from base to tool, with m in the place of rad for prismatic ones;
     ``home_rad`` is where the arm begins and ends, nowhere in particular without it. ``"free"`` asks
     for a free position, which is found.

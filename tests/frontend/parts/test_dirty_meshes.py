@@ -14,7 +14,7 @@ from shipped import shipped
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.inspection import inspect_mesh
 from cellcolor.frontend.parts.mesh import mesh_surface
-from cellcolor.frontend.parts.mesh_file import read_mesh
+from cellcolor.frontend.parts.mesh_file import load_mesh, read_mesh
 from cellcolor.frontend.parts.repairing import repair_mesh
 from cellcolor.frontend.prepared import prepare
 
@@ -98,6 +98,10 @@ def test_as_stl(tmp_path: Path) -> None:
         with pytest.raises(InputError, match="T-vertex") as caught:
             repair_mesh(*mesh)
         assert str(caught.value.field).startswith("faces near (")
+    with pytest.raises(InputError, match="T-vertex") as caught:
+        load_mesh(tmp_path / "needles.stl", 1.0, mend=True)
+    assert caught.value.file == str(tmp_path / "needles.stl")
+    assert "\n" not in str(caught.value) and "faces near (" in str(caught.value)
 
 
 def test_a_moebius_strip_is_refused() -> None:
