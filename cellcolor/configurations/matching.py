@@ -169,10 +169,10 @@ class Matching:
         """What is left over at both ends of an edge: pairs, each with a verdict.
 
         Yields:
-            The configurations a and b. True: the caller says that they belong together. None: they
-            are the nearest to each other and not far apart, so they are matched. False: they are
-            the nearest to each other, but too far apart. Pairs that the caller denies do not
-            appear.
+            A pair of configurations with a verdict: True if the caller says that they belong
+            together; None if they are the nearest to each other and not far apart, so that they are
+            matched; False if they are the nearest, but too far apart. Pairs that the caller denies
+            do not appear.
         """
         i, j = edge.tolist()
         while np.isfinite(step).any():
