@@ -72,7 +72,7 @@ VARIANTS = {
 PLAN, RINGS = "plan", "rings"
 SCENES = sorted((Path(__file__).parents[1] / "instances" / "scenes").glob("*.toml"))
 KINDS = [*LARGE, RINGS, PLAN]
-LOADING = 2.0  # s, which pinocchio, trimesh, OMPL and others take when a plan begins
+LOADING = 2.0  # s, which pinocchio, trimesh and others take when a plan begins
 
 
 @dataclass

@@ -25,7 +25,6 @@ from cellcolor.motion.following import (
 from cellcolor.motion.refusing import ArmRefusals
 from cellcolor.motion.samples import Samples, even_places, sampled, with_normals_of
 from cellcolor.motion.small_triangles import JUMP
-from cellcolor.motion.steady import steady
 from cellcolor.tool_paths.cover import Covered
 
 _ROUNDS = 5  # of paths laid out; what still fails on the last ones is cut out of them
@@ -115,10 +114,9 @@ def _course(
     between them fails a test. A step that still does on the last round is torn.
     """
 
-    def on_surface(places: Array) -> Samples:
+    def at(places: Array) -> Samples:
         return with_normals_of(sampled(path, places), surface.mesh, normals)
 
-    at = steady(on_surface, float(places[-1]))
     samples = at(places)
     followed = follow(prepared, samples, branch, deadline)
     for halvings in range(_HALVINGS + 1):
@@ -129,7 +127,7 @@ def _course(
         for share in _BETWEEN:
             way = joints[:-1] + share * np.diff(joints, axis=0)
             inner = places[:-1] + share * np.diff(places)
-            bad |= off_way(prepared.robot, way, at(inner), on_surface(inner).normals)
+            bad |= off_way(prepared.robot, way, at(inner))
         ends = valid[:-1] & valid[1:] & ~torn
         bad &= ends
         if not bad.any():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -69,7 +69,7 @@ def plan_motion(
         built: the scene and its labelled surface.
         painted: its surface in segments.
         pattern: of the tool paths.
-        seed: of the sampling planner; the same seed gives the same motion.
+        seed: of the configurations that moves may lead over; the same seed gives the same motion.
         deadline: when to give up.
         progress: told the name of each stage as it begins.
         on_paths: called with the tool paths once they are laid, before the arm moves on them.
@@ -98,7 +98,6 @@ def plan_motion(
     ground = Ground(
         prepared,
         Segments(surface, segment_of, color_of, normals),
-        small,
         states,
         pattern,
         motion,
@@ -134,19 +133,13 @@ def plan_motion(
     with clock.timed("transfers"):
         strokes, transfers = planner.between_strokes(strokes)
     with clock.timed("times"):
-        trajectory = assembled(
-            surface.name,
-            prepared.robot,
-            strokes,
-            transfers,
-            speeds,
-            motion.speed_m_per_s,
-            motion.approach_speed_m_per_s or motion.speed_m_per_s,
-            motion.spacing_m,
-            left_out,
-            {"pattern": pattern, "seed": seed},
-            deadline,
-        )
+        trajectory = assembled(prepared.robot, motion, speeds, strokes, transfers, deadline)
+    trajectory = replace(
+        trajectory,
+        name=surface.name,
+        left_out=left_out,
+        meta={"pattern": pattern, "seed": seed} | trajectory.meta,
+    )
     return MotionPlan(
         paths,
         tuple(measures),

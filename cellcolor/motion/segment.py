@@ -16,7 +16,7 @@ from cellcolor.frontend.setup import Motion
 from cellcolor.motion.courses import Courses, laid_out
 from cellcolor.motion.following import joint_space
 from cellcolor.motion.refusing import ArmRefusals
-from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
+from cellcolor.motion.small_triangles import CornerStates
 from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
 from cellcolor.motion.windings import Walls, parts_of, walls_of
 from cellcolor.tool_paths.cover import Bounds, Covered, cover
@@ -38,8 +38,7 @@ class Ground:
     Attributes:
         prepared: the scene.
         segments: of the painted surface.
-        small: its small triangles.
-        states: what the arm does at their corners.
+        states: what the arm does at the corners of its small triangles.
         pattern: of the tool paths.
         motion: of the setup.
         deadline: when to give up.
@@ -47,7 +46,6 @@ class Ground:
 
     prepared: PreparedScene
     segments: Segments
-    small: SmallTriangles
     states: CornerStates
     pattern: str
     motion: Motion
@@ -84,14 +82,14 @@ def strokes_of(ground: Ground, segment: int, branch: int) -> SegmentStrokes:
         OutOfTime: the deadline came first.
     """
     prepared, surface, motion = ground.prepared, ground.segments.surface, ground.motion
-    small, space = ground.small, joint_space(prepared)
+    small, space = ground.states.small, joint_space(prepared)
     own = ground.segments.segment_of == segment
     alone = ground.segments._replace(segment_of=np.where(own, segment, -1))
 
     def refused_near(touched: Mask) -> ArmRefusals:
         around = _AROUND * motion.spacing_m
         return ArmRefusals(
-            prepared, branch, small, ground.states, segment, touched, around, ground.deadline
+            prepared, branch, ground.states, segment, touched, around, ground.deadline
         )
 
     def courses_with(
@@ -127,7 +125,7 @@ def strokes_of(ground: Ground, segment: int, branch: int) -> SegmentStrokes:
     color = ground.segments.colors[segment]
     cracks = [crack for crack in surface.cracks if color in crack.colors]
     closed = small.whole.marked([(crack.i, crack.j) for crack in cracks])
-    parts = parts_of(small, ground.states, segment, closed)
+    parts = parts_of(ground.states, segment, closed)
     walls = walls_of(parts, small.whole, space, ground.deadline)
     if not walls.whole:
         # Some part reaches beyond the limits; only what does is left out, not the whole part.

@@ -179,12 +179,12 @@ def test_points_where_the_first_joint_is_beyond_its_limits_are_refused(ring: Pla
     branch = built.color_branch[color]
     small = SmallTriangles.of(ring.painted.surface.mesh, ring.normals, ring.painted.segment_of)
     states = corner_states(prepared, small, np.array([branch]))
-    parts = parts_of(small, states, 0, np.zeros(len(small.whole.edges), dtype=bool))
+    parts = parts_of(states, 0, np.zeros(len(small.whole.edges), dtype=bool))
     rng = np.random.default_rng(3)
     turns = np.zeros(parts.center.shape, dtype=np.int64)
     turns[:, 0] = rng.integers(-1, 2, len(turns))
     own = ring.painted.segment_of == 0
-    refusals = ArmRefusals(prepared, branch, small, states, 0, own, 0.004, NEVER)
+    refusals = ArmRefusals(prepared, branch, states, 0, own, 0.004, NEVER)
     asked = rng.choice(np.flatnonzero(parts.part_of >= 0), 400)
     shares = rng.dirichlet([2.0, 2.0, 2.0], len(asked))
     points, normals = (
