@@ -42,19 +42,6 @@ class Course:
     followed: Followed
 
 
-@dataclass(frozen=True)
-class Courses:
-    """The tool paths of one segment, and the arm on them.
-
-    Attributes:
-        covered: what was laid out.
-        courses: one of each path.
-    """
-
-    covered: Covered
-    courses: tuple[Course, ...]
-
-
 def laid_out(
     prepared: PreparedScene,
     surface: LabelledSurface,
@@ -63,7 +50,7 @@ def laid_out(
     lay: Callable[[], Covered],
     refusals: ArmRefusals,
     deadline: Deadline,
-) -> Courses:
+) -> tuple[Covered, list[Course]]:
     """Lay out the paths of a segment, and again without the places where a sample fails.
 
     Args:
@@ -76,7 +63,8 @@ def laid_out(
         deadline: when to give up.
 
     Returns:
-        Paths on which hardly any sample fails; the caller cuts out those that still do.
+        What was laid out, and the arm on each path. Hardly any sample fails; the caller cuts out
+        those that still do.
 
     Raises:
         OutOfTime: the deadline came first.
@@ -95,7 +83,7 @@ def laid_out(
                     refusals.add(int(samples.faces[at]), samples.points[at], why)
         if good:
             break
-    return Courses(covered, tuple(courses))
+    return covered, courses
 
 
 def _course(

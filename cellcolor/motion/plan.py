@@ -104,26 +104,27 @@ def plan_motion(
         deadline,
     )
     with clock.timed("tool paths"):
-        covered = [
+        found = [
             strokes_of(ground, segment, int(own_branch[segment]))
             for segment in np.unique(segment_of[segment_of >= 0]).tolist()
         ]
-    measures = [one for segment in covered for one in segment.courses.covered.measures]
+    covered = [laid for laid, _, _ in found]
+    measures = [one for laid in covered for one in laid.measures]
     paths = ToolPaths(
         surface.name,
         pattern,
         motion.spacing_m,
         motion.tool_radius_m,
-        tuple(path for segment in covered for path in segment.courses.covered.paths.paths),
+        tuple(path for laid in covered for path in laid.paths.paths),
         surface.sha256,
     )
     if on_paths is not None:
         on_paths(paths, tuple(measures))
-    strokes = [stroke for segment in covered for stroke in segment.strokes]
+    strokes = [stroke for _, own, _ in found for stroke in own]
     left_out = tuple(
         LeftOut(place.segment, place.area_m2, place.cause, place.place)
-        for one in covered
-        for place in one.courses.covered.uncovered
+        for laid in covered
+        for place in laid.uncovered
     )
     left_out = tuple(sorted(left_out, key=lambda part: (-part.area_m2, part.segment, part.place)))
     if not strokes:
@@ -144,7 +145,7 @@ def plan_motion(
         paths,
         tuple(measures),
         trajectory,
-        tuple(edge for segment in covered if segment.walls for edge in segment.walls.edges),
+        tuple(edge for _, _, walls in found for edge in walls),
         _cut_off(strokes, transfers, color_of, planner.home is not None),
     )
 

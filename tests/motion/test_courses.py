@@ -64,7 +64,7 @@ def course(
     prepared: Any = SimpleNamespace(judge=Judge(), robot=robot)
     surface: Any = SimpleNamespace(mesh=mesh)
     refusals: Any = SimpleNamespace(add=lambda *_: None)
-    (found,) = laid_out(prepared, surface, up, 0, lambda: laid, refusals, NEVER).courses
+    _, (found,) = laid_out(prepared, surface, up, 0, lambda: laid, refusals, NEVER)
     return found
 
 
