@@ -107,11 +107,12 @@ def version_of(solver: str) -> str:
 def improve(
     name: str, graph: Instance, solver: str, time_limit: float, workers: int | None
 ) -> None:
-    """Look for a better solution of a graph in both search spaces."""
+    """Look for a better solution of a graph in the search spaces that a solver has."""
     how = solver, time_limit, workers
     paper = _improved(f"{name}.solution.json", graph, "paper", *how)
     wide = f"{name}.surface.solution.json"
-    if not paper.proved_for_surface or (LIBRARY / SOLUTIONS / wide).exists():
+    of_use = not paper.proved_for_surface or (LIBRARY / SOLUTIONS / wide).exists()
+    if of_use and "surface" in make_solver(solver).abilities.search_spaces:
         _improved(wide, graph, "surface", *how, paper)
 
 

@@ -25,6 +25,7 @@ from cellcolor.cli.options import (
     TOLERANCE,
     UNIT,
     WORKERS,
+    Price,
     cellcolor,
     cover_option,
     json_option,
@@ -33,6 +34,7 @@ from cellcolor.cli.options import (
 )
 from cellcolor.cli.progress import at_work, workers_for
 from cellcolor.cli.terminal import complain, drawn_to, print_json, say, say_lines
+from cellcolor.data.prices import MOST_CM2, MOST_PRICE
 from cellcolor.errors import InputError
 
 if TYPE_CHECKING:
@@ -83,7 +85,7 @@ def _documents(rows: Iterable[Any]) -> Iterable[dict[str, Any]]:
     "--price",
     "--lift-off-price",
     metavar="CM2",
-    type=click.FloatRange(0, max_open=True),
+    type=Price(0, MOST_CM2),
     help="Print only the least sum: a lift-off costs as much as CM2 square centimeters left out.",
 )
 @click.option(
@@ -185,7 +187,7 @@ def explain(scene: Path, at: tuple[float, ...] | None, as_json: bool, **search: 
 @click.option(
     "--uncovered-price",
     metavar="PRICE",
-    type=click.FloatRange(0, max_open=True),
+    type=Price(0, MOST_PRICE),
     default=0.0,
     help="Make the sum of lift-offs and PRICE × uncovered share least.  [default: lift-offs first, "
     "then area]",
@@ -332,7 +334,7 @@ def compare(
 @click.option(
     "--change-over",
     metavar="PRICE",
-    type=click.FloatRange(min=1),
+    type=Price(1, MOST_PRICE),
     help="What a change from one set-up to the next costs, in lift-offs.  [default: as few set-ups "
     "as possible, then as few lift-offs]",
 )

@@ -10,9 +10,10 @@ import numpy as np
 
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
+from cellcolor.data.prices import check_price
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
-from cellcolor.questions.front import Front, FrontChoice, FrontPoint, check_price
+from cellcolor.questions.front import Front, FrontChoice, FrontPoint
 from cellcolor.questions.places import Place, chosen
 from cellcolor.solvers.interface import Options
 
@@ -58,11 +59,6 @@ class Wanted:
     def whole(self) -> bool:
         """Whether all that is not left alone has to be covered."""
         return self.cover is None and self.uncovered_price is None
-
-    @property
-    def everything(self) -> bool:
-        """Whether nothing is left out."""
-        return self.whole and self.left_alone is None
 
 
 def rest_of(

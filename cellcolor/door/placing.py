@@ -8,6 +8,7 @@ from dataclasses import replace
 from os import PathLike
 from typing import TYPE_CHECKING
 
+from cellcolor.data.prices import check_price
 from cellcolor.deadline import NEVER, Deadline, OutOfTime, TimeLimit
 from cellcolor.door.drawing import save_plot
 from cellcolor.door.extras import extras_for
@@ -16,7 +17,6 @@ from cellcolor.door.subject import scene_or_file
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
 from cellcolor.lab.workers import LocalWorkers, Workers
-from cellcolor.questions.front import check_price
 from cellcolor.questions.placements import Leeway, PlacedMinimum, PlacementMap, Placements
 
 if TYPE_CHECKING:

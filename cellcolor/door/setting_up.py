@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cellcolor.data.prices import check_change_over
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.extras import extras_for
 from cellcolor.door.painting import paint
@@ -17,7 +18,6 @@ from cellcolor.door.planning import plan
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Subject, scene_or_file
 from cellcolor.errors import InputError
-from cellcolor.questions.front import check_price
 from cellcolor.questions.placements import PlacedMinimum, Placements, Pose
 from cellcolor.questions.set_ups import SetUpPlan
 
@@ -106,7 +106,7 @@ def setups(
 ) -> ChosenSetUps:
     """Choose set-ups of a part that cover enough with the fewest lift-offs, with proof.
 
-    Needs the extra ``frontend``. Borders are not refined, so that all set-ups have one mesh.
+    Needs the extra ``frontend``.
 
     Args:
         scene: its file, its shipped name, or the value; as it stands it is the first candidate.
@@ -114,8 +114,8 @@ def setups(
             (extrinsic, as in a scene), or what ``place`` has tried.
         others: other scenes of the same part, such as with another arm.
         cover: the share that has to be covered of the area that any candidate reaches, 0 to 1.
-        change_over: what a change from one set-up to the next costs, in lift-offs, 1 or more; None
-            for the fewest set-ups first, then the fewest lift-offs.
+        change_over: what a change from one set-up to the next costs, in lift-offs, 1 to 1,000,000
+            with up to three decimals; None for the fewest set-ups first, then the fewest lift-offs.
         time_limit: seconds for all of it, None for as long as it takes.
         workers: CP-SAT's search workers, None for its portfolio.
         seed: of everything random.
@@ -131,7 +131,7 @@ def setups(
     if not 0 <= cover <= 1:
         raise InputError(None, "cover", f"must be from 0 to 1, is {cover:g}")
     if change_over is not None:
-        check_price("change_over", change_over, 1.0)
+        check_change_over(change_over)
     deadline = Deadline.of(time_limit)
     poses = _poses(at)
     given = [scene_or_file(one) for one in (scene, *others)]

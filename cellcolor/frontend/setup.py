@@ -186,12 +186,7 @@ class Thresholds(Table):
 
 
 class Continuity(Table):
-    """When two configurations on neighboring vertices are joined by a continuous motion.
-
-    With ``border_length_m`` longer mesh edges are bisected where colors end or have a crack.
-    """
-
-    NEWER = ("border_length_m",)
+    """When two configurations on neighboring vertices are joined by a continuous motion."""
 
     base_step_rad: Annotated[FiniteFloat, Field(gt=0), IN_RADIANS]
     step_per_length_rad_per_m: NotNegative
@@ -199,7 +194,6 @@ class Continuity(Table):
     near_singular_determinant_m3: NotNegative | None = None
     probe_spacing_m: Positive
     validity_spacing_m: Positive | None = None
-    border_length_m: Positive | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> Self:

@@ -91,7 +91,7 @@ def paint_scene(
         if not whole:
             normals = unit(drawn.interpolated(built.stages.surface.normals))
             finer = Surface(drawn.surface.vertices, drawn.surface.faces, normals)
-            stages = judged(replace(prepared, surface=finer), clock).stages
+            stages = judged(replace(prepared, surface=finer), clock)
         clock.begin("moving borders")
         branch = np.array(built.color_branch)
         cost = color_costs(prepared.robot, stages.candidates)[:, branch]

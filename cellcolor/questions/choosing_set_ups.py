@@ -17,11 +17,13 @@ import heapq
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
+from math import ceil, inf
 
 import numpy as np
 from ortools.sat.python import cp_model
 
 from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.prices import check_change_over
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
@@ -35,9 +37,8 @@ from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
 
 _WHOLE = 2**40
 """What all vertices weigh together as integers, for CP-SAT: a share is told to 1e-12."""
-_PRICE_UNIT = 1000
-"""Prices are told to a thousandth of a lift-off."""
-_SAME = 1e-6
+_UNIT = 1000
+"""Costs are added as whole numbers of thousandths of a lift-off, which an objective's price is."""
 _MOST_SETS = 20_000  # of set-ups, each with a model of its own
 
 
@@ -127,11 +128,14 @@ def choose(
         options: deadline, workers and seed; the search space is ``paper``.
 
     Raises:
-        InputError: nothing is reached.
+        InputError: nothing is reached, or the price is out of its range.
         OutOfTime: the deadline came before there was any choice.
     """
+    if change_over is not None:
+        check_change_over(change_over)
     in_turn = change_over is None  # set-ups first, then segments
-    extra = 0.0 if change_over is None else change_over - 1  # beyond the lift-off that it takes
+    # What a change-over costs beyond the lift-off that it takes; one is counted before the first.
+    extra = 0 if change_over is None else round(_UNIT * (change_over - 1))
     report = progress or (lambda _: None)
     asked = _Asked(surfaces, cover, options)
     report("the fewest set-ups")
@@ -144,17 +148,17 @@ def choose(
         report(f"{len(sets)} sets of {fewest}")
         masters = [_Master(asked, set_ups, extra) for set_ups in sets]
     best: Choice | None = None
-    cost, tried = np.inf, 0
-    queue = [(0.0, place) for place in range(len(masters))]  # by what each costs at least
+    cost, tried = inf, 0
+    queue = [(0, place) for place in range(len(masters))]  # by what each costs at least
     try:
-        while queue[0][0] < cost - _SAME:
+        while queue[0][0] < cost:
             least, place = queue[0]
             chosen = masters[place].next_choice()
             if masters[place].least > least:  # perhaps another one looks better now
                 heapq.heapreplace(queue, (masters[place].least, place))
                 if queue[0][0] < masters[place].least:
                     continue
-            if masters[place].least >= cost - _SAME:
+            if masters[place].least >= cost:
                 continue
             if chosen in masters[place].tried or not asked.everything:
                 # Its regions alone are not enough, or not what has to be covered: all of the same
@@ -163,11 +167,11 @@ def choose(
                 if chosen in masters[place].tried:  # no solver knows better
                     break
             tried += 1
-            report(f"choice {tried}, at least {queue[0][0]:g}")
+            report(f"choice {tried}, at least {queue[0][0] / _UNIT:g}")
             solved, needed = asked.solved(chosen)
             masters[place].learn(chosen, needed)
             if solved is not None:
-                own = (solved.solution.segments or 0) + extra * len(solved.set_ups)
+                own = _UNIT * (solved.solution.segments or 0) + extra * len(solved.set_ups)
                 if own < cost:
                     best, cost = solved, own
     except OutOfTime:
@@ -175,14 +179,12 @@ def choose(
             raise
     if best is None:
         raise OutOfTime
-    proved = queue[0][0] >= cost - _SAME
+    proved = queue[0][0] >= cost
     least = queue[0][0] - extra * len(best.set_ups)
     return replace(
         best,
         fewest_set_ups=fewest,
-        at_least_segments=(
-            best.solution.segments or 0 if proved else max(1, int(np.ceil(least - _SAME)))
-        ),
+        at_least_segments=(best.solution.segments or 0 if proved else max(1, ceil(least / _UNIT))),
         proved=proved,
     )
 
@@ -321,7 +323,7 @@ class _Master:
         self,
         asked: _Asked,
         set_ups: Collection[int],
-        extra: float,
+        extra: int,
         number: int | None = None,
     ) -> None:
         """A model that is not built before it is asked.
@@ -329,14 +331,14 @@ class _Master:
         Args:
             asked: the regions.
             set_ups: those that may be used.
-            extra: what a change-over costs beyond the lift-off that it takes.
+            extra: what a change-over costs beyond the lift-off that it takes, in thousandths.
             number: of set-ups to be used; None for any.
         """
         self._asked, self._set_ups, self._number = asked, set_ups, number
-        self._extra = round(extra * _PRICE_UNIT)
+        self._extra = extra
         self._model: cp_model.CpModel | None = None
-        self.least = 0.0
-        """No choice costs less, in segments and in what change-overs cost beyond one each."""
+        self.least = 0
+        """No choice costs less, in thousandths: segments, and ``extra`` for each set-up."""
         self.tried: set[frozenset[int]] = set()
 
     def _build(self) -> cp_model.CpModel:
@@ -359,7 +361,7 @@ class _Master:
         asked.cover_enough(model, self._regions, of_vertex)
         if self._number is not None:
             model.add(sum(used.values()) == self._number)
-        model.minimize(_PRICE_UNIT * self._segments + self._extra * sum(used.values()))
+        model.minimize(_UNIT * self._segments + self._extra * sum(used.values()))
         return model
 
     def next_choice(self) -> frozenset[int]:
@@ -370,7 +372,8 @@ class _Master:
         """
         self._model = self._model or self._build()
         solver = self._asked.run(self._model)
-        self.least = max(self.least, solver.best_objective_bound / _PRICE_UNIT)
+        # A whole number, told in floating point, which has room for it.
+        self.least = max(self.least, ceil(solver.best_objective_bound - 0.01))
         pairs = zip(self._numbers, self._regions, strict=True)
         return frozenset(number for number, literal in pairs if solver.value(literal))
 

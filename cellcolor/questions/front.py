@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, ulp
 from typing import Any
 
 from cellcolor.data.instance import Instance
+from cellcolor.data.prices import MOST_CM2, check_price
 from cellcolor.data.solution import Solution
 from cellcolor.data.wording import count, lift_offs_of
 from cellcolor.errors import InputError
@@ -81,16 +82,6 @@ class FrontPoint:
             "proved_for_surface": self.proved_for_surface,
             "left_out": list(self.left_out),
         }
-
-
-def check_price(name: str, price: float, least: float = 0.0) -> None:
-    """Refuse a price that is too low or no number.
-
-    Raises:
-        InputError: it is; names the price.
-    """
-    if not least <= price < inf:
-        raise InputError(None, name, f"must be a number from {least:g} on, is {price:g}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,10 +163,12 @@ class Front:
                 share of it costs that share.
 
         Raises:
-            InputError: the price is negative or no number, or nothing is known.
+            InputError: the price is out of its range, or nothing is known.
         """
         check_price("uncovered_price", uncovered_price)
-        return self._cheapest(lambda lift_offs, share: lift_offs + uncovered_price * (1 - share))
+        return self._cheapest(
+            lambda lift_offs, share: lift_offs + uncovered_price * (1 - share), uncovered_price
+        )
 
     def fewest_for(self, share: float) -> FrontChoice:
         """The fewest lift-offs that cover a share, and whether it is proved that no fewer do.
@@ -186,18 +179,20 @@ class Front:
         return self._choice(
             self.at_least(share),
             lambda lift_offs, covered: lift_offs if covered >= share - _ROUNDING else inf,
+            0.0,
         )
 
     def least_cost(self, lift_off_cm2: float) -> FrontChoice:
         """The least sum of lift-offs and area, and whether it is proved that none is less.
 
         Args:
-            lift_off_cm2: a lift-off costs as much as so many square centimeters left out.
+            lift_off_cm2: a lift-off costs as much as so many square centimeters left out, from 0
+                to ``MOST_CM2``.
 
         Raises:
-            InputError: the price is negative or no number, or the graph has no areas.
+            InputError: the price is out of its range, or the graph has no areas.
         """
-        check_price("price", lift_off_cm2)
+        check_price("price", lift_off_cm2, most=MOST_CM2)
         if any(cell.area is None for cell in self.instance.cells):
             raise InputError(None, "price", "is one of area, and the cells of this graph have none")
         whole = _CM2 * self.weight
@@ -205,17 +200,23 @@ class Front:
         def cost(lift_offs: int, covered: float) -> float:
             return lift_off_cm2 * lift_offs + whole * (1 - covered)
 
-        found = self._cheapest(cost)
+        found = self._cheapest(cost, whole)
         return replace(found, cost_cm2=cost(found.point.lift_offs, found.point.covered_share))
 
-    def _cheapest(self, cost: Callable[[int, float], float]) -> FrontChoice:
-        """The point that costs least, of its lift-offs and the share that it covers."""
+    def _cheapest(self, cost: Callable[[int, float], float], worth: float) -> FrontChoice:
+        """The point that costs least, of its lift-offs and the share that it covers.
+
+        Args:
+            worth: what it costs to leave out everything.
+        """
         if not self.points:
             raise InputError(None, None, "no division is known")
         point = min(self.points, key=lambda one: cost(one.lift_offs, one.covered_share))
-        return self._choice(point, cost)
+        return self._choice(point, cost, worth)
 
-    def _choice(self, point: FrontPoint, cost: Callable[[int, float], float]) -> FrontChoice:
+    def _choice(
+        self, point: FrontPoint, cost: Callable[[int, float], float], worth: float
+    ) -> FrontChoice:
         """A point, and whether no division costs less: of so many lift-offs that cover a share."""
         own = cost(point.lift_offs, point.covered_share)
 
@@ -226,7 +227,7 @@ class Front:
                 for lift_offs, share in enumerate([*known, 1.0])
                 if share >= 0  # otherwise so few do not cover what is required
             )
-            return own <= least + _ROUNDING * max(1.0, abs(own))
+            return own <= least + _ROUNDING * worth + 4 * ulp(own)
 
         return FrontChoice(point, proved(on_surface=False), proved(on_surface=True))
 

@@ -23,13 +23,17 @@ GROUP = "cellcolor.solvers"
 DEFAULT = "cp-sat"
 """What solves unless another solver is named."""
 
-REFERENCE = "dfs"
-"""The paper's own search, which the others are judged by on small instances."""
+PAPERS = "dfs"
+"""The paper's own search, to the letter."""
+
+REFERENCE = "dfs-cover"
+"""The same search with a bound of its own, which the others are judged by on small instances."""
 
 _OWN = {
     "cp-sat": "cellcolor.solvers.cpsat:CpSatSolver",
     "cp-sat-model": "cellcolor.solvers.cpsat:CompleteModelSolver",
     "dfs": "cellcolor.solvers.dfs:ReferenceSolver",
+    "dfs-cover": "cellcolor.solvers.dfs:CoverReferenceSolver",
     "clingo": "cellcolor.solvers.clingo:ClingoSolver",
     "choco": "cellcolor.solvers.choco.solver:ChocoSolver",
     "highs": "cellcolor.solvers.linear.rivals:HighsSolver",

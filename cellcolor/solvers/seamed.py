@@ -36,14 +36,13 @@ class Seamed:
         self._name: dict[int, Strand] = {}
         if instance.most_live_loops < 2:
             return
-        colors = [frozenset(cell.colors) for cell in instance.cells]
         once = dict.fromkeys(instance.live_edges, 1)
-        self.seams = seams_of(instance, colors, once, None)
+        self.seams = seams_of(instance, once, None)
         strands = sum(seam.strands for seam in self.seams)
         if strands > MOST_STRANDS:
             message = f"the seams need {strands} strands, {MOST_STRANDS} at most become edges"
             raise TooLarge(message)
-        graph = dart_graph(instance, colors, once, self.seams)
+        graph = dart_graph(instance, once, self.seams)
         virtual = {seam.id for seam in self.seams}
         edges = {
             edge: replace(instance.edge(edge), colors=tuple(instance.joinable(edge)))

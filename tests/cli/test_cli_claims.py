@@ -100,7 +100,7 @@ class TestWhatWasSolved:
         assert (bound["tried"], bound["budget"]) == (0, 200_000)
         assert (document["bounds_by_solver"], document["solver"]) == (0, "cp-sat")
 
-    @pytest.mark.parametrize(("solver", "name"), [("cp-sat", "CP-SAT"), ("dfs", "dfs")])
+    @pytest.mark.parametrize(("solver", "name"), [("cp-sat", "CP-SAT"), ("dfs-cover", "dfs-cover")])
     def test_what_rests_on_a_solver_is_said_and_counted(
         self, solver: str, name: str, tmp_path: Path, capsys: Capture
     ) -> None:

@@ -140,7 +140,8 @@ def test_the_command_moves_the_base(
         (("place", wok, "--base", "--roll", "0,1"), "roll: the arm's base stays upright"),
         (("place", wok, "--base", "--x", "0,1", "--leeway", "0.01"), "leeway"),
         (("place", wok, "--x", "0,1", "--uncovered-price", "-1"), "uncovered-price"),
-        (("place", wok, "--x", "0,1", "--uncovered-price", "nan"), "uncovered"),
+        (("place", wok, "--x", "0,1", "--uncovered-price", "nan"), "'--uncovered-price'"),
+        (("place", wok, "--x", "0,1", "--uncovered-price", "1e7"), "range 0<=x<=1000000"),
         (("setups", wok, "--places", places), "line 1: is a place of the arm's base"),
     ):
         assert run(*wrong) == 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from fractions import Fraction
 from itertools import combinations
 from math import pi
 from pathlib import Path
@@ -121,9 +122,12 @@ def test_a_share_is_covered_with_no_fewer_set_ups(seed: int, count: int, share: 
 
 
 @pytest.mark.slow
-@examples(6)
-@given(seed=st.integers(0, 10**6), price=st.integers(1, 5))
-def test_a_change_over_has_its_price(seed: int, price: int) -> None:
+@examples(12)
+@given(
+    seed=st.integers(0, 10**6), price=st.sampled_from([1, 2, 5, 1.001, 1.999, 999_999.999, 10**6])
+)
+def test_a_change_over_has_its_price(seed: int, price: float) -> None:
+    """To a thousandth of a lift-off, up to the highest price: sums of fractions are exact."""
     surfaces = drawn_at_random(seed, 3)
     assume(any(reached(one).any() for one in surfaces))
     everything = np.any([reached(one) for one in surfaces], axis=0)
@@ -133,10 +137,24 @@ def test_a_change_over_has_its_price(seed: int, price: int) -> None:
             if (np.any([reached(surfaces[n]) for n in some], axis=0) == everything).all():
                 graph = decomposition_of(together([surfaces[n] for n in some])).instance
                 assume(graph.most_live_loops < 2)
-                costs.append(minimum(graph) - size + price * (size - 1))
+                costs.append(minimum(graph) - size + Fraction(str(price)) * (size - 1))
     choice = choose(surfaces, 1.0, price, Options())
     used = len(choice.set_ups)
-    assert (choice.solution.segments or 0) - used + price * (used - 1) == min(costs)
+    assert (choice.solution.segments or 0) - used + Fraction(str(price)) * (used - 1) == min(costs)
+
+
+@pytest.mark.parametrize("seed", [200, 1300, 2100])
+def test_at_the_highest_price_segments_still_count(seed: int) -> None:
+    """It comes to the fewest set-ups, and then to the fewest segments, as without a price.
+
+    With 1e17, to which floating point adds no segments, up to 6 instead of 3 were called proved.
+    """
+    surfaces = [blobs(seed + n, size=6, colors=3, coverage=(0.3, 0.7)) for n in range(4)]
+    in_turn = choose(surfaces, 1.0, None, Options())
+    priced = choose(surfaces, 1.0, 1_000_000, Options())
+    assert in_turn.proved and priced.proved
+    assert priced.solution.segments == in_turn.solution.segments
+    assert len(priced.set_ups) == len(in_turn.set_ups) == in_turn.fewest_set_ups
 
 
 @pytest.fixture(scope="module")
@@ -196,7 +214,11 @@ def test_what_cannot_be_set_up_is_refused_in_a_line(
         (("--places", empty), "empty.jsonl: has no place"),
         (("-o", tmp_path / "none" / "a.png"), "its folder does not exist"),
         (("--plan", lines), "places.jsonl: must be a folder"),
-        (("--change-over", "0.5"), "not in the range"),
+        (("--change-over", "0.5"), "'--change-over': 0.5 is not in the range 1<=x<=1000000"),
+        (("--change-over", "1e17"), "'--change-over': 1e+17 is not in the range 1<=x<=1000000"),
+        (("--change-over", "1e306"), "'--change-over': 1e+306 is not in the range 1<=x<=1000000"),
+        (("--change-over", "nan"), "'--change-over': nan is not in the range 1<=x<=1000000"),
+        (("--change-over", "1.0004"), "change_over: must have no more than three decimals"),
         (("--places", tmp_path / "none"), "No such file"),
     ):
         assert run("setups", "wok_obstacle", *wrong) == 2
@@ -205,8 +227,11 @@ def test_what_cannot_be_set_up_is_refused_in_a_line(
     with pytest.raises(cellcolor.InputError, match="no set-up can be used"):
         inside = shipped("wok_obstacle", 80).moved(position_m=(0, 0, 0))
         cellcolor.setups(inside)
-    with pytest.raises(cellcolor.InputError, match="change_over"):
-        cellcolor.setups("wok_obstacle", change_over=float("nan"))
+    for price in (float("nan"), 1e17, 1e306, 0.5):
+        with pytest.raises(cellcolor.InputError, match=r"change_over: must be .* 1 to 1000000"):
+            cellcolor.setups("wok_obstacle", change_over=price)
+    with pytest.raises(cellcolor.InputError, match="change_over: must have no more than three"):
+        choose([], 1.0, 1.0004, Options())
 
 
 def test_the_command_takes_what_place_prints(

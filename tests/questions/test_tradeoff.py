@@ -94,6 +94,29 @@ def test_nothing_is_proved_by_what_is_not_known() -> None:
     assert front.least_cost(1e9).point is one and front.least_cost(1.0).point is three
 
 
+def test_a_high_price_proves_nothing_that_is_not_known() -> None:
+    """Two segments are needed, and might cover a part of 0.01 cm² whole: nobody knows.
+
+    What is compared is area, even beside lift-offs that cost as much as 1e9 cm².
+    """
+    front = cellcolor.tradeoff(STRIP)
+    unknown = ((-1.0, True), (1.0, True))
+    vague = Front(front.instance, front.points[1:2], 1e-6, unknown)
+    assert not vague.least_cost(1e9).proved
+    known = ((-1.0, True), (front.points[1].at_most_share, True))
+    assert Front(front.instance, front.points[1:2], 1e-6, known).least_cost(1e9).proved
+
+
+@pytest.mark.parametrize("price", [-1.0, 1e10, 1e17, 1e306, float("inf"), float("nan")])
+def test_prices_out_of_range_are_refused(price: float, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(cellcolor.InputError, match="price: must be a number from 0 to 1000000000"):
+        cellcolor.tradeoff(STRIP).least_cost(price)
+    assert run("tradeoff", "square", "--price", price) == 2
+    printed = capsys.readouterr()
+    (line,) = printed.err.splitlines()
+    assert "'--price'" in line and "is not in the range 0<=x<=1000000000" in line
+
+
 def test_cells_left_out_are_outside() -> None:
     row = cellcolor.decompose("half_pipe")
     rest, kept = row.without_cells([0, 3])
@@ -133,7 +156,9 @@ def test_the_largest_parts_come_first() -> None:
         solved = cellcolor.solve(STRIP, uncovered_price=price)
         assert (solved.lift_offs, solved.covered_share) == (lift_offs, choice.point.covered_share)
         assert "this costs least, proved for any division" in solved.solution.notes[0]
-    with pytest.raises(cellcolor.InputError, match="uncovered_price: must be a number from 0 on"):
+    with pytest.raises(
+        cellcolor.InputError, match="uncovered_price: must be a number from 0 to 1000000"
+    ):
         front.cheapest(-1.0)
 
 

@@ -20,7 +20,7 @@ from cellcolor.lab.families.hubs import hub_minimum
 from cellcolor.solvers.bounds.cover import hard_cells
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.dfs.cell_schemes import cell_schemes
-from cellcolor.solvers.dfs.graph import Graphs
+from cellcolor.solvers.dfs.graph import Graph
 from cellcolor.solvers.interface import Options
 
 pytestmark = pytest.mark.slow
@@ -109,7 +109,7 @@ def test_a_cell_with_many_darts_has_a_first_scheme() -> None:
     hub = Cell(0, (0,), (tuple(range(1, DEEP + 1)),))
     edges = tuple(Edge(n + 1, 0, n + 1) for n in range(DEEP))
     instance = Instance("hub", ("red",), (hub, *petals), edges)
-    cell, _ = Graphs(instance, 1).cell(instance.cells[0], 0)
+    cell, _ = Graph(instance, 1).cell(0, 0)
     first = next(cell_schemes(cell, [None] * DEEP))
     assert first.subcells == ((0, tuple(range(DEEP))),)
 

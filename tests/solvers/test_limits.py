@@ -19,8 +19,7 @@ from cellcolor.decomposition import decompose
 from cellcolor.errors import TooLarge
 from cellcolor.lab.families import blobs, hub, planar_graph
 from cellcolor.lab.families.hubs import hub_with_loops
-from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_cover
-from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
+from cellcolor.solvers.bounds.cover import color_regions, greedy_independent_set, set_cover
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import CompleteModel, formulation
 from cellcolor.solvers.cpsat.parts import split
@@ -63,7 +62,7 @@ def test_loops_beside_do_not_hide_a_conflict(islands: int) -> None:
 @given(seed=SEEDS, cells=st.integers(1, 12), colors=st.integers(1, 5))
 def test_strangers_found_at_once_share_no_region(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 3, colors)
-    found = greedy_strangers(instance)
+    found = greedy_independent_set(instance)
     for one, other in combinations(found, 2):
         assert not any({one, other} <= region for _, region in color_regions(instance))
     assert 1 <= len(found) <= set_cover(instance).bound
@@ -76,16 +75,6 @@ def test_a_cover_without_time_is_a_cover_all_the_same(seed: int, cells: int, col
     hasty, exact = set_cover(instance, deadline=OVER), set_cover(instance)
     assert set().union(*(touched for _, touched in hasty.regions)) == set(range(cells))
     assert 1 <= hasty.bound <= exact.bound == len(exact.regions) <= len(hasty.regions)
-
-
-def test_without_time_no_color_is_dropped() -> None:
-    instance = planar_graph(3, 8, 12, 4)
-    assert drop_dominated(instance, left_out(instance, OVER)) == tuple(
-        frozenset(c.colors) for c in instance.cells
-    )
-    assert drop_dominated(instance, left_out(instance)) != drop_dominated(
-        instance, left_out(instance, OVER)
-    )
 
 
 # --- deadlines ------------------------------------------------------------------------------------

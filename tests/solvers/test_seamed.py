@@ -30,7 +30,7 @@ RIVALS = (
 @examples(5)
 @given(seed=st.integers(0, 10**4))
 def test_a_rival_finds_what_the_depth_first_search_finds(solver: str, seed: int) -> None:
-    """``dfs`` puts its seams elsewhere, by code of its own; the checker sees both divisions."""
+    """``dfs-cover`` has seams of its own, elsewhere; the checker sees both divisions."""
     try:
         make_solver(solver)
     except SolverMissing:
@@ -38,7 +38,7 @@ def test_a_rival_finds_what_the_depth_first_search_finds(solver: str, seed: int)
     made = SMALL["islands, holes"](seed)
     instance = made if isinstance(made, Instance) else cellcolor.decompose(made)
     assert instance.most_live_loops > 1
-    expected = solve(instance, Options(), "dfs")
+    expected = solve(instance, Options(), "dfs-cover")
     found = solve(instance, Options(workers=1), solver)
     assert (expected.status, found.status) == ("optimal", "optimal")
     assert found.segments == expected.segments

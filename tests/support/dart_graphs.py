@@ -8,6 +8,5 @@ from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph, seams_of
 
 def graph_of(instance: Instance, strands: int = 1) -> DartGraph:
     """With seams as wide as they can have to be."""
-    colors = [frozenset(cell.colors) for cell in instance.cells]
     counts = {edge.id: strands for edge in instance.edges}
-    return dart_graph(instance, colors, counts, seams_of(instance, colors, counts, None))
+    return dart_graph(instance, counts, seams_of(instance, counts, None))

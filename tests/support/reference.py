@@ -1,13 +1,14 @@
-"""The reference solver, its divisions seen by the checker."""
+"""The depth-first searches, their divisions seen by the checker."""
 
 from __future__ import annotations
 
 from cellcolor.checker.division import check_division
 from cellcolor.data.instance import Instance
-from cellcolor.solvers.dfs import ReferenceSolver
+from cellcolor.solvers.dfs import CoverReferenceSolver, ReferenceSolver
 from cellcolor.solvers.interface import Answer, Options
 
 SOLVER = ReferenceSolver()
+COVERED = CoverReferenceSolver()
 SURFACE = Options(search_space="surface", strands=2)
 
 

@@ -2,9 +2,9 @@
 
 The method looks at two color regions (``cover``) alone and merges their cells where nothing
 separates them (``merged_surface``). A hub is a cell of all colors with a ring of one-colored cells,
-the petals. Around it, two petals of one color that alternate with two of another are in conflict:
-a segment that connects the first two separates the others. The proof is in
-docs/bounds/conflicts.md.
+the leaf cells. Around it, two leaf cells of one color that alternate with two of another are in
+conflict: a segment that connects the first two separates the others. The proof is in
+docs/bounds.md.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ class Side:
     def separations(self, near: int, far: int) -> list[Separation]:
         """What a segment that touches two merged cells of its own separates of the other region.
 
-        Each component of the wall (docs/bounds/conflicts.md) gives one, if the segment separates
+        Each component of the wall (docs/bounds.md) gives one, if the segment separates
         some of its merged cells.
         """
         if not self._wall or not {near, far} <= self._tree.keys():

@@ -1,8 +1,9 @@
-"""The most links that fit side by side into a cell.
+"""The most connections that fit side by side into a cell.
 
 A **grouping** puts the live darts of a cell into groups, each in one color that all of its darts
 can be joined in, so that the groups can be drawn in the cell as connected areas that do not cross.
-A group of k darts has k - 1 **links**: there are as many links and groups together as darts.
+A group of k darts makes k - 1 **connections**: there are as many connections and groups together
+as darts.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ class Grouping:
     groups: tuple[Group, ...]
 
     @property
-    def links(self) -> int:
+    def connections(self) -> int:
         """How many there are in all groups together."""
         return sum(len(group.darts) - 1 for group in self.groups)
 
@@ -50,10 +51,10 @@ def recursion_size(colors: Sequence[frozenset[int]]) -> int:
 
 
 def best_grouping(colors: Sequence[frozenset[int]], deadline: Deadline = NEVER) -> Grouping:
-    """A grouping of a single loop's darts with the most links.
+    """A grouping of a single loop's darts with the most connections.
 
     ``best[i, j]`` is that of the darts from i to j, j left out. Dart i is in no group with a later
-    one, or it is linked in some color to a next dart k, and the darts between them are separate.
+    one, or it is connected in some color to a next dart k, and the darts between them are separate.
 
     Args:
         colors: those that each dart can be joined in, one at least, in cyclic order.
@@ -69,7 +70,7 @@ class _Tables:
     """What the recursion has found.
 
     Attributes:
-        best: the most links of the darts from one to another.
+        best: the most connections of the darts from one to another.
         linked: the same for each end if the first dart is in a group of some color.
     """
 
@@ -119,10 +120,10 @@ class _Tables:
 
     def _following(self, last: int, color: int, end: int) -> int | None:
         """The next dart of a group, None after its last one."""
-        links = self.linked[last, color][end]
+        most = self.linked[last, color][end]
         for other in self._darts[color]:
             if last < other < end:
                 further = self.linked[other, color][end]
-                if links == self.best[last + 1, other] + 1 + further:
+                if most == self.best[last + 1, other] + 1 + further:
                     return other
         return None

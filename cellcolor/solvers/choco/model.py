@@ -152,7 +152,7 @@ class Ranks:
                     self._clause(some, [link, self.joined[abs(here), color]])
             self._clause([self.met[other]], [link, self.met[one]])
             self._clause([], [link, self.met[one], self.up[other]])
-            if self.problem.later_petal(one, other):
+            if self.problem.later_leaf(one, other):
                 self._clause([], [link, self.up[other]])
         for dart, literal in self.up.items():
             self._clause([self.met[dart]], [literal])
@@ -218,7 +218,7 @@ class Ranks:
         """A number for the links of each cell, which has that bound in other sums as well."""
         for cell, links in self.links_of.items():
             colors = [self.problem.colors_of(dart) for dart in self.problem.cells[cell]]
-            most = best_grouping(colors).links
+            most = best_grouping(colors).connections
             self.linked[cell] = self._int(0, most, f"links_{cell}")
             self._post(self.model.sum(links, "=", self.linked[cell]))
 

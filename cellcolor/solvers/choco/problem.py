@@ -1,4 +1,4 @@
-"""What is given: the live darts of each cell in cyclic order, no dominated colors."""
+"""What is given: the live darts of each cell in cyclic order."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds.cover import Region, color_regions
-from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
 from cellcolor.solvers.joined_chains import only_loops
 
 Pair = tuple[int, int]
@@ -30,8 +29,8 @@ class Problem:
 
     Attributes:
         cells: the live darts of each cell in cyclic order.
-        colors: the joinable colors of each live edge, without dominated ones.
-        cell_colors: the available colors of each cell, without dominated ones.
+        colors: the joinable colors of each live edge.
+        cell_colors: the available colors of each cell.
         regions: the color regions; no segment reaches beyond one.
     """
 
@@ -49,15 +48,10 @@ class Problem:
             TooLarge: a model would not fit into memory.
         """
         loops = only_loops(instance)
-        allowed = drop_dominated(instance, left_out(instance, deadline))
         deadline.check()
-        colors = {}
-        for edge in instance.edges:
-            joinable = instance.joinable(edge.id)
-            if joinable and (left := allowed[edge.left] & allowed[edge.right] & set(joinable)):
-                colors[edge.id] = left
-        cells = tuple(tuple(dart for dart in loop if abs(dart) in colors) for loop in loops)
-        problem = cls(cells, colors, allowed, tuple(color_regions(instance, allowed)))
+        colors = {edge: frozenset(instance.joinable(edge)) for edge in instance.live_edges}
+        own = tuple(frozenset(cell.colors) for cell in instance.cells)
+        problem = cls(tuple(loops), colors, own, tuple(color_regions(instance)))
         if problem.size > LARGEST_MODEL:
             raise TooLarge(f"a model of more than {LARGEST_MODEL:.1g} terms is not built")
         return problem
@@ -107,15 +101,17 @@ class Problem:
                 found.add(max(only, key=lambda cell: len(self.cells[cell])))
         return frozenset(found)
 
-    def later_petal(self, one: int, other: int) -> bool:
-        """Whether both darts lead to petals, and linked, the second petal need not be the root.
+    def later_leaf(self, one: int, other: int) -> bool:
+        """Whether both darts lead to leaf cells, and linked, the second leaf cell need not be the
+        root.
 
-        A petal is a cell with a single live dart. A segment that can have its root in one of two
-        petals can have it in the other, so the first one suffices, unless the second is a home.
+        A leaf cell is a cell with a single live dart. A segment that can have its root in one of
+        two leaf cells can have it in the other, so the first one suffices, unless the second is a
+        home.
         """
         first, second = (self.cell_of[-dart] for dart in (one, other))
-        petals = len(self.cells[first]) == len(self.cells[second]) == 1
-        return petals and second not in self.homes
+        leaves = len(self.cells[first]) == len(self.cells[second]) == 1
+        return leaves and second not in self.homes
 
     @property
     def size(self) -> float:

@@ -13,7 +13,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.solvers.bounds.cover import color_regions
-from cellcolor.solvers.bounds.reductions import enough_crossings
+from cellcolor.solvers.bounds.crossings import enough_crossings
 from cellcolor.solvers.cpsat.dart_graph import complete_graph
 from cellcolor.solvers.cpsat.drawing import seamed
 from cellcolor.solvers.cpsat.formulation import SectorModel
@@ -112,8 +112,7 @@ class CompleteModelSolver:
         bounds = [Bound("cover", built.fewest_regions, "surface")]
         if isfinite(solver.best_objective_bound):
             bound = ceil(solver.best_objective_bound - 1e-6)
-            colors = [frozenset(cell.colors) for cell in instance.cells]
-            if all(n <= options.strands for n in enough_crossings(instance, colors).values()):
+            if all(n <= options.strands for n in enough_crossings(instance).values()):
                 bounds.append(Bound("crossings", bound, "surface"))
             bounds.append(Bound("model", bound, "strands"))
         return Answer(division, seams, tuple(bounds), (), built.size)

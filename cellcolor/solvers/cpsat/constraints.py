@@ -161,11 +161,11 @@ def euler(m: SectorModel) -> None:
     )
 
 
-def links(m: SectorModel) -> None:
-    """(12) No cell has more links than its best grouping of darts.
+def connections(m: SectorModel) -> None:
+    """(12) No cell has more connections than its best grouping of darts.
 
-    A cell with s sub-cells has as many links as joined darts less s, and by Euler's formula in the
-    cell s is half of 2, its surplus and the changes of color along its border together.
+    A cell with s sub-cells has as many connections as joined darts less s. By Euler's formula in
+    the cell, s is half of 2, its surplus and the changes of color along its border together.
     """
     sectors, graph = m.sectors, m.sectors.graph
     own: dict[int, list[cp_model.IntVar]] = {}
@@ -180,7 +180,7 @@ def links(m: SectorModel) -> None:
         if not sectors.rings[cell]:
             continue
         colors = [graph.darts[dart].colors for dart in loops[0]]
-        most = best_grouping(colors).links
+        most = best_grouping(colors).connections
         # Where not all common colors are joinable, a dart may show one and not be joined.
         joined = [
             1 - m.apart[m.link_at[dart]][0]
@@ -222,6 +222,6 @@ REDUNDANT: Mapping[str, Callable[[SectorModel], None]] = {
     "cover": cover,
     "company": company,
     "euler": euler,
-    "links": links,
+    "connections": connections,
     "zeros": zeros,
 }

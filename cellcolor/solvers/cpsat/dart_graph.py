@@ -95,20 +95,14 @@ def enough_strands(counts: Sequence[int]) -> list[int]:
     return found
 
 
-def seams_of(
-    instance: Instance,
-    colors: Sequence[frozenset[int]],
-    strands: Mapping[int, int],
-    most: int | None,
-) -> tuple[Seam, ...]:
+def seams_of(instance: Instance, strands: Mapping[int, int], most: int | None) -> tuple[Seam, ...]:
     """Seams from the first live loop of every cell to its other live loops; see ``widened``."""
     loops = loops_of(instance)
-    return widened(instance, colors, strands, loops, seam_places(instance, loops), most)
+    return widened(instance, strands, loops, seam_places(instance, loops), most)
 
 
 def widened(
     instance: Instance,
-    colors: Sequence[frozenset[int]],
     strands: Mapping[int, int],
     loops: Loops,
     places: Sequence[Seam],
@@ -119,7 +113,6 @@ def widened(
     """Seams with as many strands as are ever needed.
 
     Args:
-        colors: the colors each cell may be painted in, all or some of its own.
         strands: strands of each live edge.
         loops: the loops between which seams run.
         places: where they run, in the order of cells and loops.
@@ -131,9 +124,7 @@ def widened(
     for own in loops:
         if len(own) < 2:
             continue
-        counts = [
-            sum(strands[abs(d)] for d in loop if _joinable(instance, colors, d)) for loop in own
-        ]
+        counts = [sum(strands[abs(d)] for d in loop if instance.joinable(d)) for loop in own]
         if leaves:
             counts[1:] = [0 if count == 1 else count for count in counts[1:]]
         widths = [count if most is None else min(count, most) for count in enough_strands(counts)]
@@ -143,7 +134,6 @@ def widened(
 
 def dart_graph(
     instance: Instance,
-    colors: Sequence[frozenset[int]],
     strands: Mapping[int, int],
     seams: Sequence[Seam] | None,
     loops: Loops | None = None,
@@ -153,7 +143,6 @@ def dart_graph(
     """Put strands and seams into the instance's loops and leave out what is dead.
 
     Args:
-        colors: the colors each cell may be painted in, all or some of its own.
         strands: strands of each live edge.
         seams: one for each further loop of a cell, all from the cell's first loop; None leaves the
             loops apart.
@@ -166,18 +155,13 @@ def dart_graph(
     seams_of: dict[int, list[Seam]] = {}
     for seam in seams or ():
         seams_of.setdefault(seam.cell, []).append(seam)
-    joinable_of: dict[int, frozenset[int]] = {}
-
-    def joinable(dart: int) -> frozenset[int]:
-        edge = abs(dart)
-        if edge not in joinable_of:
-            joinable_of[edge] = _joinable(instance, colors, edge)
-        return joinable_of[edge]
-
+    colors = tuple(frozenset(cell.colors) for cell in instance.cells)
+    joinable_of = {edge: frozenset(instance.joinable(edge)) for edge in instance.live_edges}
     for cell, own in zip(instance.cells, loops, strict=True):
         between = None if seams is None else seams_of.get(cell.id, [])
         apart = [
-            leaves and sum(strands[abs(d)] for d in loop if joinable(d)) == 1 for loop in own[1:]
+            leaves and sum(strands[abs(d)] for d in loop if instance.joinable(d)) == 1
+            for loop in own[1:]
         ]
         walks = _walks(own, between, apart)
         cyclic = []
@@ -185,7 +169,7 @@ def dart_graph(
             first = len(found)
             for dart, through in walk:
                 if through is None:
-                    shared = joinable(dart)
+                    shared = joinable_of.get(abs(dart), frozenset())
                     count = strands[abs(dart)] if shared else 0
                 else:
                     shared, count = colors[cell.id], through.strands
@@ -196,7 +180,7 @@ def dart_graph(
         lists.append(tuple(cyclic))
     index = {name: number for number, (name, _, _) in enumerate(found)}
     darts = tuple(Dart(name, cell, index[-name[0], name[1]], own) for name, cell, own in found)
-    return DartGraph(darts, tuple(lists), tuple(colors), tuple(seams or ()))
+    return DartGraph(darts, tuple(lists), colors, tuple(seams or ()))
 
 
 def complete_graph(
@@ -215,21 +199,12 @@ def complete_graph(
     Raises:
         TooLarge: seams would need too many strands.
     """
-    colors = tuple(frozenset(cell.colors) for cell in instance.cells)
-    seams = widened(instance, colors, strands, loops, places, None, leaves=True)
+    seams = widened(instance, strands, loops, places, None, leaves=True)
     count = sum(seam.strands for seam in seams)
     if count > MOST_STRANDS:
         message = f"{count} strands of seams, {MOST_STRANDS} are the most"
         raise TooLarge(f"The model was not built: it would need {message}.")
-    return dart_graph(instance, colors, strands, seams, loops, leaves=True)
-
-
-def _joinable(instance: Instance, colors: Sequence[frozenset[int]], dart: int) -> frozenset[int]:
-    own = instance.joinable(dart)
-    if not own:
-        return frozenset()
-    edge = instance.edge(dart)
-    return (colors[edge.left] & colors[edge.right]).intersection(own)
+    return dart_graph(instance, strands, seams, loops, leaves=True)
 
 
 def _walks(

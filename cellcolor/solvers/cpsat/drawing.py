@@ -188,7 +188,7 @@ def seamed(
         for cell, blocks in enumerate(painting)
     ]
     seams = [replace(seam, strands=widths.get(seam.id, 0)) for seam in places]
-    made = dart_graph(instance, graph.colors, strands, seams, loops)
+    made = dart_graph(instance, strands, seams, loops)
     found = [
         [
             Block(block.color, {made.number_of[name] for name in names})

@@ -199,8 +199,6 @@ class SectorModel:
         one, other, dart = self.sectors.links[number]
         colors = [self.colors(sector) for sector in (one, other)]
         joinable, shared = self._joinable(one, dart), colors[0] & colors[1]
-        if not joinable:
-            return self.true, None
         if len(colors[0]) == len(colors[1]) == 1:
             return self.false, None
         apart = model.new_bool_var(f"apart[{number}]")

@@ -52,9 +52,8 @@ class OptimalSchemes(Iterator[Division]):
             raise InputError(None, "search_space", message)
         self.count: int | None = None
         self._instance, self._options, self._segments = instance, options, segments
-        colors = [frozenset(cell.colors) for cell in instance.cells]
         once = dict.fromkeys((edge.id for edge in instance.edges), 1)
-        self._graph = dart_graph(instance, colors, once, None)
+        self._graph = dart_graph(instance, once, None)
         self._planarity = Planarity(self._graph, options.deadline)
         self._found = self._all()
 
@@ -91,7 +90,7 @@ class OptimalSchemes(Iterator[Division]):
         if start is None:
             return None
         strands = dict.fromkeys(self._instance.live_edges, 1)
-        seamed = dart_graph(self._instance, self._graph.colors, strands, start.seams)
+        seamed = dart_graph(self._instance, strands, start.seams)
         known = painting_of(seamed, start.division)
         return canonical(self._graph, moved(seamed, known, self._graph))
 

@@ -16,8 +16,8 @@ from ortools.sat.python import cp_model
 from cellcolor.data.solution import ModelSize, Seam
 from cellcolor.deadline import Deadline
 from cellcolor.errors import TooLarge
-from cellcolor.solvers.bounds.cover import Region, color_regions, greedy_strangers, set_cover
-from cellcolor.solvers.bounds.reductions import enough_crossings
+from cellcolor.solvers.bounds.cover import Region, color_regions, greedy_independent_set, set_cover
+from cellcolor.solvers.bounds.crossings import enough_crossings
 from cellcolor.solvers.cpsat.dart_graph import DartGraph, complete_graph, dart_graph, widened
 from cellcolor.solvers.cpsat.drawing import moved, seamed
 from cellcolor.solvers.cpsat.exact_shapes import exact_minimum
@@ -35,9 +35,10 @@ FEW_STRANDS = 2
 MOST_RINGS = 3
 """Rings of sectors in local search, one more from turn to turn. More leave more room."""
 
-FEW_MOVES, MOVES = 5, 300
+FEW_MOVES, FIRST_MOVES, MOVES = 5, 30, 300
 """Moves of local search in vain, for each segment, before nothing better is expected: from a start
-of which there are many, and from the best division."""
+of which there are many, from the best division in the first turn, and later. On most surfaces the
+first plan ends the search, so the first turn does not last long."""
 
 LEVELS = (1, 0.1), (2, 0.2), (0, 0.7)
 """How much of a linear relaxation plans are made with, and the share of the effort. Plans of many
@@ -67,9 +68,9 @@ class Part:
         self._part, self._options, self._runner, self._report = part, options, runner, report
         self.instance, self.cells = part.instance, part.cells
         self._colors = tuple(frozenset(cell.colors) for cell in part.instance.cells)
-        self._enough = enough_crossings(part.instance, self._colors)
+        self._enough = enough_crossings(part.instance)
         self._once = dict.fromkeys(self._enough, 1)
-        self.bound = self.surface_bound = len(greedy_strangers(part.instance))
+        self.bound = self.surface_bound = len(greedy_independent_set(part.instance))
         self.by = "strangers"
         self.cover_bound = self.bound
         self.planner: Planner | None = None
@@ -131,7 +132,7 @@ class Part:
         rings = 1 + turn % MOST_RINGS
         start = self._covered(rng.sample(self._planned, len(self._planned)))
         self._recolor(*start, rng, deadline, FEW_MOVES, rings)
-        self._recolor(*self.best, rng, deadline, MOVES, rings)
+        self._recolor(*self.best, rng, deadline, MOVES if turn else FIRST_MOVES, rings)
 
     def separate(self, effort: float, deadline: Deadline) -> None:
         """Plan segments that respect separating pairs, each plan a start of local search.
@@ -214,9 +215,9 @@ class Part:
         """The part's darts with one strand of each edge, and few of each seam."""
         part = self._part
         seams: tuple[Seam, ...] = widened(
-            self.instance, self._colors, self._once, part.loops, part.seams, FEW_STRANDS
+            self.instance, self._once, part.loops, part.seams, FEW_STRANDS
         )
-        return dart_graph(self.instance, self._colors, self._once, seams, part.loops)
+        return dart_graph(self.instance, self._once, seams, part.loops)
 
     def _begin_with(self, plan: SegmentPlan, deadline: Deadline) -> None:
         """Local search from cells that are painted whole, as a plan has them."""

@@ -1,4 +1,4 @@
-"""The CP-SAT model of a segment plan (docs/bounds/conflicts.md, "Segment plans").
+"""The CP-SAT model of a segment plan (docs/bounds.md, "Segment plans").
 
 Terms, with the places that define them:
 

@@ -2,7 +2,7 @@
 
 A plan is a relaxation of a division. It does not say how segments run; it only respects the pairs
 of segments that are known to be unable to pass each other (``conflicts``). So if there is no plan
-with n segments, no division of the surface has n segments (docs/bounds/conflicts.md, "Segment
+with n segments, no division of the surface has n segments (docs/bounds.md, "Segment
 plans"). A plan takes milliseconds where the model takes seconds.
 """
 

@@ -1,11 +1,14 @@
-"""The paper's depth-first enumerative solver, to be read with sections IV and V.
+"""The paper's depth-first enumerative solver, to be read with the paper.
 
-- ``graph``: the topological graph, prepared for the search.
-- ``cell_schemes``: enumerates the schemes of one cell (section IV).
-- ``search``: paints the graph cell by cell (section V) and keeps the cost up to date (section V-A).
-  It also checks the edges in state 0 of each complete painting.
+- ``graph``: section III-C, cells as cyclic lists of topological edges
+- ``cell_schemes``: section IV, the codes of 0, 1, × and brackets of one cell
+- ``zeros``: section IV-C, zeros are moved outside the brackets
+- ``search``: section V, the graph solved cell by cell, with the cost of section V-A
+- ``literal_cost``: section V-A, the cost rule at its word, for study
+- ``cover``: not in the paper, a lower bound from a set cover (solver ``dfs-cover``)
 """
 
-from cellcolor.solvers.dfs.solver import ReferenceSolver
+from cellcolor.solvers.dfs.literal_cost import literal_cost
+from cellcolor.solvers.dfs.solver import CoverReferenceSolver, ReferenceSolver
 
-__all__ = ["ReferenceSolver"]
+__all__ = ["CoverReferenceSolver", "ReferenceSolver", "literal_cost"]

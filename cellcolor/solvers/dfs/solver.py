@@ -1,36 +1,28 @@
-"""The reference solver as a :class:`cellcolor.solvers.interface.Solver`."""
+"""The depth-first searches as solvers (:class:`cellcolor.solvers.interface.Solver`)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import partial
-from itertools import islice
-from typing import TypeVar
+from collections.abc import Iterator, Sequence
 
 from cellcolor.data.bounds import Bound
-from cellcolor.data.cells_and_edges import Cell, DartName
+from cellcolor.data.cells_and_edges import DartName
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, number_segments
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
-from cellcolor.solvers.dfs.cell_schemes import CellScheme
-from cellcolor.solvers.dfs.graph import GraphCell, Graphs
-from cellcolor.solvers.dfs.search import Search
+from cellcolor.solvers.dfs.cover import CoverSearch
+from cellcolor.solvers.dfs.graph import Graph
+from cellcolor.solvers.dfs.search import Painting, Search
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 
-_T = TypeVar("_T")
-_Blocks = list[tuple[int, list[DartName]]]
-_Repeatable = Callable[[], Iterator[_T]]
-
-_KEPT = 200_000
-"""The most painted cells that are kept, all schemes of all parts of the graph together, while the
-schemes of different parts are combined; they take some hundred megabytes at most."""
+_Blocks = dict[int, list[tuple[int, list[DartName]]]]
+"""Color and darts of the sub-cells of each cell."""
 
 
 class ReferenceSolver:
     """The paper's depth-first enumerative solver (sections IV and V), counting segments.
 
-    It is meant to be read beside the paper and to judge faster solvers on small instances.
+    It is meant to be read beside the paper, and to judge other solvers on small instances.
     """
 
     abilities = Abilities(
@@ -38,6 +30,9 @@ class ReferenceSolver:
         several_loops=True,
         optimal_schemes=True,
     )
+    search: type[Search] = Search
+    bound_before: str | None = None
+    """The kind of the bound that is known before the search and holds for any division."""
 
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
@@ -47,13 +42,12 @@ class ReferenceSolver:
         In the search space ``surface`` it has the fewest segments that ``options.strands``
         corridors across each edge allow, and the lower bound is one that any division obeys.
         """
-        graphs = Graphs(instance, options.strands)
-        parts = [_Part(graphs, cells, options.deadline) for cells in graphs.parts()]
-        covers = sum(part.bound for part in parts)
+        parts = self._parts(instance, options)
+        before = sum(part.bound for part in parts)
 
         def report() -> None:
             if progress is not None:
-                best = [part.segments for part in parts if part.segments is not None]
+                best = [part.cost for part in parts if part.cost is not None]
                 total = sum(best) if len(best) == len(parts) else None
                 progress(total, sum(part.bound for part in parts))
 
@@ -62,20 +56,19 @@ class ReferenceSolver:
             for part in parts:
                 for _ in part.improve():
                     report()
-                if options.search_space == "paper" and part.segments is not None:
-                    part.bound = part.segments  # the search was complete
+                if options.search_space == "paper" and part.cost is not None:
+                    part.bound = part.cost  # the search was complete
                     report()
         except OutOfTime:
             pass
-        bounds = (
-            Bound("cover", covers, "surface"),
-            Bound("search", sum(part.bound for part in parts), "strands"),
-        )
-        if any(part.segments is None for part in parts):
-            return Answer(None, (), bounds)
+        bounds = [Bound("search", sum(part.bound for part in parts), "strands")]
+        if self.bound_before is not None:
+            bounds.insert(0, Bound(self.bound_before, before, "surface"))
+        if any(part.cost is None for part in parts):
+            return Answer(None, (), tuple(bounds))
         blocks = {cell: found for part in parts for cell, found in part.blocks.items()}
         seams = sorted((s for part in parts for s in part.seams), key=lambda seam: seam.id)
-        return Answer(_division(instance, blocks), tuple(seams), bounds)
+        return Answer(_division(instance, blocks), tuple(seams), tuple(bounds))
 
     def optimal_schemes(
         self, instance: Instance, options: Options, segments: int
@@ -88,74 +81,77 @@ class ReferenceSolver:
             ValueError: ``segments`` is not the minimum.
         """
         if options.search_space != "paper" or options.strands != 1:
-            raise InputError(
-                None, "search_space", "optimal schemes are defined in the search space 'paper' only"
-            )
-        graphs = Graphs(instance, 1)
-        for cell in graphs.cells_with_several_loops():
-            raise InputError(
-                None,
-                f"cells[{cell}].loops",
-                f"cell {cell} has several loops with live darts: optimal schemes are defined "
-                "for cells with one",
-            )
-        return self._schemes(instance, graphs, options.deadline, segments)
+            message = "optimal schemes are defined in the search space 'paper' only"
+            raise InputError(None, "search_space", message)
+        for cell, loops in enumerate(instance.live_loops):
+            if len(loops) > 1:
+                raise InputError(
+                    None,
+                    f"cells[{cell}].loops",
+                    f"cell {cell} has several loops with live darts: optimal schemes are defined "
+                    "for cells with one",
+                )
+        return self._schemes(instance, options, segments)
 
-    def _schemes(
-        self, instance: Instance, graphs: Graphs, deadline: Deadline, segments: int
-    ) -> Iterator[Division]:
-        minima = []
-        parts = graphs.parts()
-        for cells in parts:
-            part = _Part(graphs, cells, deadline)
+    def _schemes(self, instance: Instance, options: Options, segments: int) -> Iterator[Division]:
+        parts = self._parts(instance, options)
+        for part in parts:
             for _ in part.improve():
                 pass
-            minima.append(part.segments or 0)
-        if sum(minima) != segments:
-            raise ValueError(f"the minimum is {sum(minima)} segments, not {segments}")
+        minimum = sum(part.cost or 0 for part in parts)
+        if minimum != segments:
+            raise ValueError(f"the minimum is {minimum} segments, not {segments}")
+        # Parts that no live edge connects are painted independently: one after the other, too.
+        trail: list[Iterator[_Blocks]] = [iter([{}])]
+        while trail:
+            options.deadline.check()
+            blocks = next(trail[-1], None)
+            if blocks is None:
+                trail.pop()
+            elif len(trail) <= len(parts):
+                trail.append(parts[len(trail) - 1].optimal_after(blocks))
+            else:
+                yield _division(instance, blocks)
 
-        def of_part(cells: list[Cell], budget: int) -> Iterator[dict[int, _Blocks]]:
-            graph = [graphs.cell(cell, 0)[0] for cell in cells]
-            search = Search(graph, graphs.region, deadline)
-            search.budget = budget
-            for _, schemes in search.paintings():
-                yield _named(graph, schemes)
+    def _parts(self, instance: Instance, options: Options) -> list[_Part]:
+        graph = Graph(instance, options.strands)
+        return [_Part(self.search, graph, cells, options.deadline) for cells in graph.parts()]
 
-        # Parts of the graph that no live edge connects are painted independently.
-        streams, room = [], _KEPT
-        for cells, budget in zip(parts, minima, strict=True):
-            stream, used = _repeatable(partial(of_part, cells, budget), room // len(cells))
-            streams.append(stream)
-            room -= used * len(cells)
-        for combined in _combinations(streams):
-            deadline.check()
-            blocks: dict[int, _Blocks] = {}
-            for one in combined:
-                blocks |= one
-            yield _division(instance, blocks)
+
+class CoverReferenceSolver(ReferenceSolver):
+    """The same search with a bound from a set cover, for instances that take it too long."""
+
+    search = CoverSearch
+    bound_before = "cover"
 
 
 class _Part:
     """The minimum of one connected part of the graph.
 
     Attributes:
-        segments: of the best division so far, None when there is none.
+        cost: the number of segments of the best division so far, None when there is none.
         bound: no division has fewer.
-        blocks: the best division: color and darts of the sub-cells of each cell.
+        blocks: the best division.
         seams: what its darts refer to.
     """
 
-    def __init__(self, graphs: Graphs, cells: list[Cell], deadline: Deadline) -> None:
-        self._graphs = graphs
-        self._cells = cells
-        self._deadline = deadline
-        self.segments: int | None = None
-        self.blocks: dict[int, _Blocks] = {}
+    def __init__(
+        self, search: type[Search], graph: Graph, cells: Sequence[int], deadline: Deadline
+    ) -> None:
+        self._kind, self._graph, self._cells, self._deadline = search, graph, cells, deadline
+        self.cost: int | None = None
+        self.blocks: _Blocks = {}
         self.seams: list[Seam] = []
-        several = {cell.id for cell in cells}.intersection(graphs.cells_with_several_loops())
-        strands = (most for cell in several for most in graphs.sufficient_seam_strands(cell))
-        self._enough = max(strands, default=0)
-        self.bound = self._search(0)[1].bound
+        self.bound = self._first_bound()
+
+    def _first_bound(self) -> int:
+        """What is known of an unpainted graph; 1 if there is no time to find it."""
+        try:
+            return self._search(0)[0].least(Painting())
+        except OutOfTime as error:
+            if isinstance(error, KeyboardInterrupt):
+                raise
+            return 1
 
     def improve(self) -> Iterator[None]:
         """Search until the minimum is found; yields whenever there is a better division.
@@ -165,64 +161,39 @@ class _Part:
         Raises:
             OutOfTime: the deadline has passed.
         """
-        for seam_strands in range(self._enough + 1):
-            graph, search, seams = self._search(seam_strands)
-            search.budget = sum(len(cell.colors) + len(cell.darts) for cell in graph)
-            if self.segments is not None:
-                search.budget = self.segments - 1
-            for segments, schemes in search.paintings():
-                search.budget = segments - 1
-                self.segments = segments
-                self.blocks = _named(graph, schemes)
-                self.seams = seams
+        strands = (n for cell in self._cells for n in self._graph.sufficient_seam_strands(cell))
+        for seam_strands in range(max(strands, default=0) + 1):
+            search, seams = self._search(seam_strands)
+            if self.cost is not None:
+                search.budget = self.cost - 1
+            for painting in search.paintings():
+                self.cost = painting.cost
+                search.budget = self.cost - 1
+                self.blocks, self.seams = _named(search, painting), seams
                 yield
-            if self.segments == self.bound:
+            if self.cost == self.bound:
                 return
 
-    def _search(self, seam_strands: int) -> tuple[list[GraphCell], Search, list[Seam]]:
-        built = [self._graphs.cell(cell, seam_strands) for cell in self._cells]
-        graph = [cell for cell, _ in built]
-        search = Search(graph, self._graphs.region, self._deadline)
-        return graph, search, [seam for _, seams in built for seam in seams]
+    def optimal_after(self, blocks: _Blocks) -> Iterator[_Blocks]:
+        """Every painting with the minimum, beside those of other parts."""
+        search, _ = self._search(0)
+        search.budget = self.cost or 0
+        for painting in search.paintings():
+            yield blocks | _named(search, painting)
+
+    def _search(self, seam_strands: int) -> tuple[Search, list[Seam]]:
+        built = [self._graph.cell(cell, seam_strands) for cell in self._cells]
+        cells = [cell for cell, _ in built]
+        search = self._kind(self._graph, cells, self._deadline)
+        return search, [seam for _, seams in built for seam in seams]
 
 
-def _repeatable(stream: Callable[[], Iterator[_T]], most: int) -> tuple[_Repeatable[_T], int]:
-    """A stream to be read many times, and how many items are kept for that.
-
-    Up to ``most`` items are kept in memory; a stream that has more is made again each time.
-    """
-    first = list(islice(stream(), most + 1))
-    if len(first) > most:
-        return stream, 0
-    return first.__iter__, len(first)
-
-
-def _combinations(streams: Sequence[_Repeatable[_T]]) -> Iterator[tuple[_T, ...]]:
-    """One item of each stream in all ways, as :func:`itertools.product`, which keeps them all."""
-    if not streams:
-        yield ()
-        return
-    chosen: list[_T] = []
-    running = [streams[0]()]
-    while running:
-        del chosen[len(running) - 1 :]
-        try:
-            chosen.append(next(running[-1]))
-        except StopIteration:
-            running.pop()
-            continue
-        if len(running) == len(streams):
-            yield tuple(chosen)
-        else:
-            running.append(streams[len(running)]())
-
-
-def _named(graph: Sequence[GraphCell], schemes: Iterable[CellScheme]) -> dict[int, _Blocks]:
+def _named(search: Search, painting: Painting) -> _Blocks:
     return {
         cell.id: [(color, [cell.darts[i] for i in darts]) for color, darts in scheme.subcells]
-        for cell, scheme in zip(graph, schemes, strict=True)
+        for cell, scheme in zip(search.cells, painting.schemes, strict=True)
     }
 
 
-def _division(instance: Instance, blocks: dict[int, _Blocks]) -> Division:
+def _division(instance: Instance, blocks: _Blocks) -> Division:
     return number_segments([blocks[cell.id] for cell in instance.cells])

@@ -1,10 +1,9 @@
-"""Bounds and reductions beside the model: set cover, strangers, dominated colors, crossings."""
+"""Bounds beside the model: set cover, independent sets, crossings."""
 
 from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import replace
 
 from exhaustive_minima import minimum
 from hypothesis import assume, given
@@ -18,8 +17,8 @@ from cellcolor.data.instance import Instance
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.solvers.bounds.cover import color_regions, hard_cells, set_cover
+from cellcolor.solvers.bounds.crossings import enough_crossings
 from cellcolor.solvers.bounds.merged_surface import merge_cells
-from cellcolor.solvers.bounds.reductions import drop_dominated, enough_crossings, left_out
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 from examples import examples
@@ -41,30 +40,6 @@ def test_set_cover_splits_colors_into_regions() -> None:
     # Two red cells that do not touch need a segment each.
     apart = Instance("apart", ("red",), (Cell(0, (RED,), ()), Cell(1, (RED,), ())), ())
     assert set_cover(apart).bound == 2
-
-
-@examples(15)
-@given(seed=SEEDS, cells=st.integers(2, 7), colors=st.integers(2, 4))
-def test_dropping_dominated_colors_keeps_the_minimum(seed: int, cells: int, colors: int) -> None:
-    instance = planar_graph(seed, cells, cells + 3, colors)
-    reduced = drop_dominated(instance, left_out(instance))
-    assert all(own <= set(cell.colors) for own, cell in zip(reduced, instance.cells, strict=True))
-    assert minimum(with_colors(instance, reduced)) == minimum(instance)
-
-
-def with_colors(instance: Instance, colors: tuple[frozenset[int], ...]) -> Instance:
-    """The instance with fewer colors a cell."""
-    cells = tuple(
-        replace(cell, colors=tuple(sorted(own)))
-        for cell, own in zip(instance.cells, colors, strict=True)
-    )
-    edges = []
-    for edge in instance.edges:
-        left = instance.joinable(edge.id)
-        if left:
-            left = tuple(c for c in left if c in colors[edge.left] & colors[edge.right])
-        edges.append(replace(edge, colors=left))
-    return replace(instance, cells=cells, edges=tuple(edges))
 
 
 @examples(20)
@@ -110,18 +85,15 @@ def test_a_color_is_not_dominated_by_one_that_an_edge_keeps_out() -> None:
     assert solve(instance, Options()).segments == 2
 
 
-def test_a_crack_keeps_a_color_from_being_dominated() -> None:
+def test_a_color_that_a_crack_stops_is_needed() -> None:
     # Blue is everywhere where red is, but only red passes the one edge.
-    instance = Instance.read(PAPER / "dominated-by-crack.json")
-    assert drop_dominated(instance, left_out(instance)) == (frozenset({RED}), frozenset({RED}))
-    assert solve(instance, Options()).segments == 1
+    assert solve(Instance.read(PAPER / "dominated-by-crack.json"), Options()).segments == 1
 
 
 def test_crossings_that_are_enough() -> None:
     """X and Y of the corridors share red and blue, and each touches two cells of one color more."""
     instance = Instance.read(PAPER / "parallel-corridors.json")
-    colors = [frozenset(cell.colors) for cell in instance.cells]
-    enough = enough_crossings(instance, colors)
+    enough = enough_crossings(instance)
     assert enough == {edge: 2 if edge == 2 else 1 for edge in (1, 2, 3, 5, 7)}
 
 
@@ -129,8 +101,7 @@ def test_a_ring_of_cells_that_share_two_colors_bounds_no_crossings() -> None:
     cells = tuple(Cell(i, (RED, BLUE), ((i + 1, -((i - 1) % 3 + 1)),)) for i in range(3))
     edges = tuple(Edge(i + 1, i, (i + 1) % 3) for i in range(3))
     instance = Instance("ring of three", ("red", "blue"), cells, edges)
-    both = [frozenset({RED, BLUE})] * 3
-    assert set(enough_crossings(instance, both).values()) == {math.inf}
+    assert set(enough_crossings(instance).values()) == {math.inf}
 
 
 @examples(20)
@@ -138,15 +109,13 @@ def test_a_ring_of_cells_that_share_two_colors_bounds_no_crossings() -> None:
 def test_more_crossings_than_enough_gain_nothing(seed: int, cells: int, colors: int) -> None:
     """Against the reference solver, which knows nothing of this, with one strand more."""
     instance = planar_graph(seed, cells, cells + 2, colors)
-    enough = max(
-        enough_crossings(instance, drop_dominated(instance, left_out(instance))).values(), default=1
-    )
+    enough = max(enough_crossings(instance).values(), default=1)
     assume(enough <= 2)
     strands = int(enough)
     found = solve(instance, Options(search_space="surface", strands=strands))
     assert found.proved_for_surface
     wider = Options(search_space="surface", strands=strands + 1)
-    assert solve(instance, wider, "dfs").segments == found.segments
+    assert solve(instance, wider, "dfs-cover").segments == found.segments
 
 
 @examples(12)

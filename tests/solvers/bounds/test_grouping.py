@@ -27,4 +27,4 @@ def test_no_groups_have_more_links(colors: list[frozenset[int]]) -> None:
     assert sorted(chain(*(g.darts for g in found.groups))) == list(range(len(colors)))
     assert all(g.color in colors[dart] for g in found.groups for dart in g.darts)
     assert allowed[frozenset(frozenset(g.darts) for g in found.groups)] == max(allowed.values())
-    assert found.links == max(allowed.values())
+    assert found.connections == max(allowed.values())

@@ -158,4 +158,4 @@ def test_the_solver_claims_no_more_than_holds(seed: int, cells: int, strands: in
     options = Options(
         search_space="surface" if strands > 1 else "paper", strands=strands, workers=1
     )
-    assert solve(instance, options).segments == solve(instance, options, "dfs").segments
+    assert solve(instance, options).segments == solve(instance, options, "dfs-cover").segments

@@ -149,9 +149,8 @@ def test_a_part_of_340_cells() -> None:
     """By solving one window after another it had 18 segments in minutes (until 2026-11-24)."""
     instance = cellcolor.read(INSTANCES / "hard" / "large_part_1.json")
     assert isinstance(instance, Instance)
-    colors = [frozenset(cell.colors) for cell in instance.cells]
     once = {edge.id: 1 for edge in instance.edges}
-    graph = dart_graph(instance, colors, once, seams_of(instance, colors, once, 2))
+    graph = dart_graph(instance, once, seams_of(instance, once, 2))
     sectors = sector_graph(graph, 1)
     painted = [min(graph.colors[cell]) for cell in sectors.cell]
     search = Recoloring(sectors, painted, Random(0))

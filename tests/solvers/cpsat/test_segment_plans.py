@@ -70,7 +70,7 @@ def test_what_cannot_be_planned_cannot_be_painted(seed: int, cells: int, colors:
     instance = planar_graph(seed, cells, cells + 3, colors)
     fewest, plan = fewest_planned(instance)
     assert set_cover(instance).bound <= fewest <= minimum(instance)
-    wide = solve(instance, Options(search_space="surface", strands=2), "dfs")
+    wide = solve(instance, Options(search_space="surface", strands=2), "dfs-cover")
     assert wide.segments is not None
     assert fewest <= wide.segments
     for cell in instance.cells:

@@ -23,8 +23,7 @@ RED, BLUE = 0, 1
 
 
 def loops_apart(instance: Instance) -> DartGraph:
-    colors = [frozenset(cell.colors) for cell in instance.cells]
-    return dart_graph(instance, colors, dict.fromkeys(instance.live_edges, 1), None)
+    return dart_graph(instance, dict.fromkeys(instance.live_edges, 1), None)
 
 
 def some_choice_is_left(graph: DartGraph, blocks_of: Mapping[int, Blocks]) -> bool:

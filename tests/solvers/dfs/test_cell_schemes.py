@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import product
+from itertools import combinations, product
 from math import comb
 
 import pytest
@@ -15,7 +15,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.solvers.dfs import ReferenceSolver
 from cellcolor.solvers.dfs.cell_schemes import CellScheme, cell_schemes
 from cellcolor.solvers.dfs.graph import GraphCell
-from cellcolor.solvers.dfs.search import zeros_fit
+from cellcolor.solvers.dfs.zeros import zeros_fit
 from cellcolor.solvers.interface import Options
 
 SOLVER = ReferenceSolver()
@@ -29,7 +29,7 @@ def divisions(size: int) -> set[frozenset[frozenset[int]]]:
     """
     colors = tuple(range(max(1, size // 2)))
     darts = tuple(range(1, size + 1))
-    cell = GraphCell(0, colors, darts, (frozenset(colors),) * size, (-1,) * size, (0,) * size)
+    cell = GraphCell(0, colors, darts, (frozenset(colors),) * size)
     return {
         frozenset(frozenset(darts) for _, darts in scheme.subcells)
         for scheme in cell_schemes(cell, (None,) * size)
@@ -80,9 +80,7 @@ def test_codes_of_a_four_edge_cell() -> None:
 def test_schemes_of_a_lone_cell_in_two_colors(edges: int) -> None:
     """With colors: rules 2 to 4, round the cyclic list's end too (red, blue and red again)."""
     cell = Cell(0, (0, 1), (tuple(range(1, edges + 1)),))
-    alone = GraphCell(
-        0, (0, 1), cell.loops[0], (frozenset((0, 1)),) * edges, (-1,) * edges, (0,) * edges
-    )
+    alone = GraphCell(0, (0, 1), cell.loops[0], (frozenset((0, 1)),) * edges)
     found = [frozenset(scheme.subcells) for scheme in cell_schemes(alone, (None,) * edges)]
     expected = {
         frozenset(local.blocks)
@@ -90,6 +88,53 @@ def test_schemes_of_a_lone_cell_in_two_colors(edges: int) -> None:
         for local in any_scheme(cell, painted)
     }
     assert len(found) == len(set(found)) and set(found) == expected
+
+
+def schemes_of_a_lone_cell(edges: int, colors: int) -> int:
+    """The schemes by their definition (docs/semantics.md, section 3, rules 2 to 4): all are tried.
+
+    Each dart gets 0 or the number of its block, blocks in the order of their first darts, and each
+    block a color.
+    """
+    count = 0
+    for darts in product(range(edges + 1), repeat=edges):
+        blocks = list(dict.fromkeys(block for block in darts if block))
+        if blocks != list(range(1, len(blocks) + 1)):
+            continue  # the same division, its blocks numbered in another order
+        if len(blocks) > 1 and any(darts.count(block) < 2 for block in blocks):
+            continue
+        if any(
+            0 != darts[a] == darts[c] != darts[b] == darts[d] != 0
+            for a, b, c, d in combinations(range(edges), 4)
+        ):
+            continue  # the blocks cross
+        ones = [block for block in darts if block]
+        for painted in product(range(colors), repeat=max(1, len(blocks))):
+            count += not any(
+                one != other and painted[one - 1] == painted[other - 1]
+                for one, other in zip(ones, ones[1:] + ones[:1], strict=True)
+            )
+    return count
+
+
+@pytest.mark.parametrize(
+    ("edges", "colors", "schemes"),
+    [(1, 2, 4), (2, 2, 8), (3, 2, 16), (4, 2, 36), (5, 2, 94), (6, 2, 272), (4, 3, 60)],
+)
+def test_a_cell_has_more_divisions_than_the_paper_says(
+    edges: int, colors: int, schemes: int
+) -> None:
+    """The third erratum: 2^n * m with one sub-cell, and from n = 4 on others beside these.
+
+    One sub-cell has any of the 2^n - 1 sets of darts that are not empty, in m colors; and there are
+    m ways without a dart in state 1. With n = 4, two darts and the other two in another color are
+    m * (m - 1) schemes more in each of two ways.
+    """
+    darts = tuple(range(1, edges + 1))
+    lone = GraphCell(0, tuple(range(colors)), darts, (frozenset(range(colors)),) * edges)
+    assert schemes_of_a_lone_cell(edges, colors) == schemes
+    assert len(list(cell_schemes(lone, (None,) * edges))) == schemes
+    assert (schemes > 2**edges * colors) == (edges >= 4)
 
 
 def test_zeros_that_show_one_color_on_both_sides_do_not_fit() -> None:
@@ -101,8 +146,7 @@ def test_zeros_that_show_one_color_on_both_sides_do_not_fit() -> None:
         ({1}, (red, red), True),
     ):
         cells = [
-            GraphCell(i, (0, 1), (dart,), (frozenset(joinable),), (-1,), (0,))
-            for i, dart in enumerate((1, -1))
+            GraphCell(i, (0, 1), (dart,), (frozenset(joinable),)) for i, dart in enumerate((1, -1))
         ]
         assert zeros_fit(cells, painted) == fits
 

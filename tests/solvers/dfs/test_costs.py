@@ -2,30 +2,28 @@
 
 from __future__ import annotations
 
+import random
+from itertools import islice
+
+import networkx
+import pytest
+from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
+from meshes import drawn
 from reference import SOLVER, segments
 
 from cellcolor.data.cells_and_edges import twin
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division
-from cellcolor.solvers.dfs.search import SegmentCounts
+from cellcolor.data.solution import count_segments, number_segments
+from cellcolor.deadline import NEVER
+from cellcolor.decomposition import decompose
+from cellcolor.lab.families import planar_graph
+from cellcolor.solvers.dfs import literal_cost
+from cellcolor.solvers.dfs.graph import Graph
+from cellcolor.solvers.dfs.search import Painting, Search
 from cellcolor.solvers.interface import Options
-
-
-def literal_cost(division: Division) -> int:
-    """What ``Δcost = 1 - j`` adds up to when j counts distinct solved *cells*.
-
-    Every sub-cell adds 1 and takes off the number of distinct sub-cells it joins that were painted
-    before it, so that the order does not matter: the sum is the number of sub-cells less the
-    number of distinct joined pairs. It is the number of segments only where no cycle of joined
-    sub-cells closes.
-    """
-    subcells = [subcell for cell in division for subcell in cell.subcells]
-    holder = {dart: number for number, own in enumerate(subcells) for dart in own.darts}
-    pairs = {frozenset((one, holder[twin(dart)])) for dart, one in holder.items()}
-    return len(subcells) - sum(len(pair) == 2 for pair in pairs)
 
 
 def test_literal_cost_counts_a_cycle_as_less_than_nothing() -> None:
@@ -46,26 +44,65 @@ def test_literal_cost_counts_pairs_not_edges() -> None:
     assert literal_cost(division) == 2
 
 
-@given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), max_size=25), st.data())
-def test_segments_are_undone(joins: list[tuple[int, int]], data: st.DataObject) -> None:
-    """After taking back the last joins the cost is that of the first ones alone."""
-    kept = data.draw(st.integers(0, len(joins)))
-    tried = SegmentCounts([1] * 11)
-    for region in range(10):
-        tried.add(region)
-    for number, (a, b) in enumerate(joins):
-        if number == kept:
-            mark = tried.mark()
-            late = tried.add(10)
-            tried.join(late, a)
-        tried.join(a, b)
-    if kept < len(joins):
-        tried.undo(mark)
-    groups = [{i} for i in range(10)]
-    for a, b in joins[:kept]:
-        merged = {i for group in groups if group & {a, b} for i in group}
-        groups = [group for group in groups if not group & merged] + [merged]
-    assert tried.cost == len(groups)
-    assert {
-        frozenset(i for i in range(10) if tried.find(i) == tried.find(j)) for j in range(10)
-    } == {frozenset(group) for group in groups}
+def test_literal_cost_prefers_a_circle_to_a_division_with_fewer_segments() -> None:
+    """r is red, R red or green, b blue, a and c are red or blue (c also green).
+
+    Blue a and c connect the two b: one red and one blue segment. Red ones connect nothing that is
+    not connected without them, so there are 3 segments. But r, R, a and c are joined in six pairs
+    then: 4 - 6, and 2 for the two b.
+    """
+    labels = {"r": [0], "R": [0, 2], "b": [1], "a": [0, 1], "c": [0, 1, 2]}
+    instance = decompose(drawn("rbR raR rcR rbR rrR", labels))
+    graph = Graph(instance, 1)
+    (part,) = graph.parts()
+    cells = [graph.cell(cell, 0)[0] for cell in part]
+    everything = Search(graph, cells, NEVER).paintings()
+    costs = []
+    for painting in everything:
+        blocks = {
+            cell.id: [(color, [cell.darts[i] for i in darts]) for color, darts in scheme.subcells]
+            for cell, scheme in zip(cells, painting.schemes, strict=True)
+        }
+        division = number_segments([blocks[cell.id] for cell in instance.cells])
+        assert count_segments(division) == painting.cost
+        costs.append((literal_cost(division), painting.cost))
+    assert min(cost for _, cost in costs) == minimum(instance) == 2
+    assert min(costs) == (0, 3)
+    assert {literal for literal, cost in costs if cost == 2} == {2}
+
+
+@pytest.mark.parametrize("seed", [1, 149, 150, 156, 250])
+def test_the_cost_so_far_may_fall(seed: int) -> None:
+    """A branch that costs as much as the best one so far may still come to the minimum."""
+    instance = planar_graph(seed, 5, 8, 3)
+    assert segments(instance, SOLVER.minimize(instance, Options())) == minimum(instance) == 1
+
+
+@given(st.integers(0, 10**4), st.booleans(), st.randoms(use_true_random=False))
+def test_the_cost_carried_along_is_the_number_of_segments(
+    seed: int, self_edges: bool, chance: random.Random
+) -> None:
+    """Of each part of the graph that is solved so far, counted again by a search for components."""
+    graph = Graph(planar_graph(seed, 6, 10, 2, self_edges=self_edges), 1)
+    search = Search(graph, [graph.cell(c, 0)[0] for c in graph.parts()[0]], NEVER)
+    painting = Painting()
+    while len(painting.schemes) < len(search.cells):
+        branches = list(islice(search.branches(painting), 50))
+        if not branches:
+            return
+        painting = chance.choice(branches)
+        pieces = [
+            (color, {cell.darts[i] for i in darts})
+            for cell, scheme in zip(search.cells, painting.schemes, strict=False)
+            for color, darts in scheme.subcells
+        ]
+        joined = networkx.Graph()
+        joined.add_nodes_from(range(len(pieces)))
+        joined.add_edges_from(
+            (one, other)
+            for one, (_, darts) in enumerate(pieces)
+            for other, (_, others) in enumerate(pieces)
+            if darts & {twin(dart) for dart in others}
+        )
+        assert painting.cost == networkx.number_connected_components(joined)
+        assert search.least(painting) <= painting.cost + (len(painting.schemes) < len(search.cells))

@@ -1,14 +1,13 @@
-"""The reference solver on small and odd instances; what it refuses, and its limits."""
+"""The depth-first searches on small and odd instances; what they refuse, and their limits."""
 
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
 from library import PAPER
-from reference import SOLVER, SURFACE, segments
+from reference import COVERED, SOLVER, SURFACE, segments
 from relabelled import turned_loop
 
 from cellcolor.data.bounds import Bound
@@ -18,38 +17,43 @@ from cellcolor.data.solution import scheme_key
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.lab.families import hub, planar_graph
-from cellcolor.solvers.dfs import solver
-from cellcolor.solvers.dfs.cell_schemes import CellScheme
-from cellcolor.solvers.dfs.graph import Graphs
-from cellcolor.solvers.dfs.search import Search
+from cellcolor.solvers.dfs import ReferenceSolver
+from cellcolor.solvers.dfs.graph import Graph
 from cellcolor.solvers.interface import Answer, Options
 
+BOTH = pytest.mark.parametrize("solver", [SOLVER, COVERED], ids=["dfs", "dfs-cover"])
 
-def schemes(instance: Instance, count: int) -> int:
-    return len({scheme_key(d) for d in SOLVER.optimal_schemes(instance, Options(), count)})
+
+def schemes(solver: ReferenceSolver, instance: Instance, count: int) -> int:
+    found = [scheme_key(d) for d in solver.optimal_schemes(instance, Options(), count)]
+    assert len(found) == len(set(found))
+    return len(found)
 
 
 def test_no_cells_have_no_segments() -> None:
     nothing = Instance("nothing", ("red",), (), ())
-    assert SOLVER.minimize(nothing, Options()) == Answer(
-        (), (), (Bound("cover", 0, "surface"), Bound("search", 0, "strands"))
-    )
+    search = Bound("search", 0, "strands")
+    assert SOLVER.minimize(nothing, Options()) == Answer((), (), (search,))
+    cover = Bound("cover", 0, "surface")
+    assert COVERED.minimize(nothing, Options()) == Answer((), (), (cover, search))
     assert list(SOLVER.optimal_schemes(nothing, Options(), 0)) == [()]
 
 
-def test_one_cell_without_border() -> None:
+@BOTH
+def test_one_cell_without_border(solver: ReferenceSolver) -> None:
     """A closed surface of one cell: one segment, in any of its colors."""
     sphere = Instance("sphere", ("red", "blue"), (Cell(0, (0, 1), ()),), ())
-    answer = SOLVER.minimize(sphere, Options())
+    answer = solver.minimize(sphere, Options())
     assert segments(sphere, answer) == answer.lower_bound == 1
-    assert schemes(sphere, 1) == 2
+    assert schemes(solver, sphere, 1) == 2
 
 
-def test_a_self_edge_joins_a_cell_to_itself() -> None:
+@BOTH
+def test_a_self_edge_joins_a_cell_to_itself(solver: ReferenceSolver) -> None:
     """A cylinder cut open: its two sides joined, or the same color shown twice, which is a lie."""
     cylinder = Instance("cylinder", ("red",), (Cell(0, (0,), ((1, 2, -1, 3),)),), _edges(3))
-    assert segments(cylinder, SOLVER.minimize(cylinder, Options())) == 1
-    (division,) = SOLVER.optimal_schemes(cylinder, Options(), 1)
+    assert segments(cylinder, solver.minimize(cylinder, Options())) == 1
+    (division,) = solver.optimal_schemes(cylinder, Options(), 1)
     assert set(division[0].subcells[0].darts) == {1, -1}
 
 
@@ -57,7 +61,8 @@ def _edges(count: int) -> tuple[Edge, ...]:
     return (Edge(1, 0, 0), *(Edge(i, 0, -1) for i in range(2, count + 1)))
 
 
-def test_parts_are_independent() -> None:
+@BOTH
+def test_parts_are_independent(solver: ReferenceSolver) -> None:
     """Twice the same graph: twice the segments, and every pair of its schemes."""
     one = Instance.read(PAPER / "crossing-zeros.json")
     shift = len(one.cells)
@@ -71,13 +76,14 @@ def test_parts_are_independent() -> None:
     ]
     edges = [Edge(e.id + 9, e.left + shift, e.right + shift) for e in one.edges]
     twice = Instance("twice", one.colors, (*one.cells, *cells), (*one.edges, *edges))
-    answer = SOLVER.minimize(twice, Options())
+    answer = solver.minimize(twice, Options())
     assert segments(twice, answer) == answer.lower_bound == 4
-    assert schemes(twice, 4) == 3 * 3
+    assert schemes(solver, twice, 4) == 3 * 3
 
 
+@BOTH
 @pytest.mark.parametrize("seed", range(12))
-def test_names_do_not_matter(seed: int) -> None:
+def test_names_do_not_matter(solver: ReferenceSolver, seed: int) -> None:
     """Cells, colors and edges renamed, loops begun elsewhere: same minimum, as many schemes."""
     instance = planar_graph(seed, 5, 8, 3, self_edges=seed % 2 == 0)
     rng = random.Random(seed)
@@ -109,24 +115,26 @@ def test_names_do_not_matter(seed: int) -> None:
         cells=tuple(sorted(cells, key=lambda c: c.id)),
         edges=tuple(sorted(edges, key=lambda e: e.id)),
     )
-    best = segments(instance, SOLVER.minimize(instance, Options()))
-    assert segments(renamed, SOLVER.minimize(renamed, Options())) == best
-    assert schemes(renamed, best) == schemes(instance, best)
+    best = segments(instance, solver.minimize(instance, Options()))
+    assert segments(renamed, solver.minimize(renamed, Options())) == best
+    assert schemes(solver, renamed, best) == schemes(solver, instance, best)
 
 
-def test_schemes_are_refused_where_they_are_not_defined() -> None:
+@BOTH
+def test_schemes_are_refused_where_they_are_not_defined(solver: ReferenceSolver) -> None:
     with pytest.raises(InputError, match="cell 1 has several loops") as caught:
-        SOLVER.optimal_schemes(Instance.read(PAPER / "annulus.json"), Options(), 3)
+        solver.optimal_schemes(Instance.read(PAPER / "annulus.json"), Options(), 3)
     assert caught.value.field == "cells[1].loops"
     with pytest.raises(InputError, match="paper"):
-        SOLVER.optimal_schemes(Instance.read(PAPER / "ring.json"), SURFACE, 2)
+        solver.optimal_schemes(Instance.read(PAPER / "ring.json"), SURFACE, 2)
 
 
-def test_schemes_of_a_wrong_minimum_are_refused() -> None:
+@BOTH
+def test_schemes_of_a_wrong_minimum_are_refused(solver: ReferenceSolver) -> None:
     ring = Instance.read(PAPER / "ring.json")
     for wrong in (1, 3):
         with pytest.raises(ValueError, match="the minimum is 2"):
-            list(SOLVER.optimal_schemes(ring, Options(), wrong))
+            list(solver.optimal_schemes(ring, Options(), wrong))
 
 
 def two_rows(count: int) -> Instance:
@@ -150,32 +158,16 @@ def two_rows(count: int) -> Instance:
     return Instance("two rows", ("red", "blue"), tuple(cells), tuple(edges))
 
 
-@pytest.mark.parametrize("kept", [0, 60, 200_000])
-def test_schemes_of_parts_are_combined_in_all_ways(
-    kept: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Whether the schemes of both rows, of one or of none are kept: 7 cells, 8 schemes each."""
-    monkeypatch.setattr(solver, "_KEPT", kept)
-    found = list(SOLVER.optimal_schemes(two_rows(3), Options(), 8))
-    assert len(found) == len({scheme_key(division) for division in found}) == 64
+@BOTH
+def test_schemes_of_parts_are_combined_in_all_ways(solver: ReferenceSolver) -> None:
+    """8 schemes of each row."""
+    assert schemes(solver, two_rows(3), 8) == 64
 
 
-def test_few_schemes_are_kept_for_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The first scheme of all does not wait until those of all parts are in memory."""
-    monkeypatch.setattr(solver, "_KEPT", 1000)
-    drawn = 0
-    paintings = Search.paintings
-
-    def counted(search: Search) -> Iterator[tuple[int, list[CellScheme]]]:
-        nonlocal drawn
-        for painting in paintings(search):
-            drawn += 1
-            yield painting
-
-    monkeypatch.setattr(Search, "paintings", counted)
-    found = SOLVER.optimal_schemes(two_rows(10), Options(), 22)
-    next(found)
-    assert drawn < 200  # of 1024 for each row: 21 cells a scheme
+def test_the_first_scheme_of_all_waits_for_one_of_each_part() -> None:
+    """Not until all 2^60 of a row are listed."""
+    division = next(COVERED.optimal_schemes(two_rows(60), Options(), 122))
+    assert len(division) == 2 * 121
 
 
 def test_combining_parts_ends_with_the_time(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -186,7 +178,8 @@ def test_combining_parts_ends_with_the_time(monkeypatch: pytest.MonkeyPatch) -> 
         next(found)
 
 
-def test_depth_has_no_end() -> None:
+@BOTH
+def test_depth_has_no_end(solver: ReferenceSolver) -> None:
     """A row of 1,500 cells, more than Python's stack has levels, is one segment."""
 
     def row(count: int) -> Instance:
@@ -196,68 +189,76 @@ def test_depth_has_no_end() -> None:
         return Instance("row", ("red",), cells, edges)
 
     long = row(1500)
-    assert segments(long, SOLVER.minimize(long, Options(deadline=Deadline.after(60.0)))) == 1
+    assert segments(long, solver.minimize(long, Options(deadline=Deadline.after(60.0)))) == 1
 
 
 def test_time_limit_gives_the_best_so_far() -> None:
     """40 petals are out of reach, and 6 colors give no useful bound: only the limit ends this."""
     instance = hub(0, 40, 6)
     assert instance.known is not None and instance.known.paper is not None
-    answer = SOLVER.minimize(instance, Options(deadline=Deadline.after(0.5)))
+    answer = COVERED.minimize(instance, Options(deadline=Deadline.after(0.5)))
     assert answer.lower_bound == 6  # one segment for each color
     if answer.division is not None:
         assert segments(instance, answer) >= instance.known.paper.segments
     with pytest.raises(OutOfTime):
-        list(SOLVER.optimal_schemes(instance, Options(deadline=Deadline.after(0.2)), 20))
+        list(COVERED.optimal_schemes(instance, Options(deadline=Deadline.after(0.2)), 20))
 
 
 def test_no_time_at_all_gives_no_division() -> None:
-    answer = SOLVER.minimize(hub(4, 8, 3), Options(deadline=Deadline.after(-1.0)))
+    options = Options(deadline=Deadline.after(-1.0))
+    search = Bound("search", 1, "strands")
+    assert SOLVER.minimize(hub(4, 8, 3), options) == Answer(None, (), (search,))
     # One connected part, of which not even a cover was looked for.
-    assert answer == Answer(None, (), (Bound("cover", 1, "surface"), Bound("search", 1, "strands")))
+    cover = Bound("cover", 1, "surface")
+    assert COVERED.minimize(hub(4, 8, 3), options) == Answer(None, (), (cover, search))
 
 
-def test_progress_closes_the_gap() -> None:
+@pytest.mark.parametrize(("solver", "bound"), [(SOLVER, 1), (COVERED, 4)])
+def test_progress_closes_the_gap(solver: ReferenceSolver, bound: int) -> None:
+    """The paper's search knows nothing before it has found a division; the cover is 4 colors."""
     instance = hub(0, 10, 4)
     calls: list[tuple[int | None, int]] = []
-    answer = SOLVER.minimize(instance, Options(), lambda best, bound: calls.append((best, bound)))
+    answer = solver.minimize(instance, Options(), lambda best, bound: calls.append((best, bound)))
     best = segments(instance, answer)
-    assert calls[0] == (None, 4) and calls[-1] == (best, best)
+    assert calls[0] == (None, bound) and calls[-1] == (best, best)
     found = [value for value, _ in calls if value is not None]
     assert found == sorted(found, reverse=True) and len(found) > 2
 
 
+@BOTH
 @pytest.mark.parametrize("petals", range(4, 13))
-def test_hubs(petals: int) -> None:
+def test_hubs(solver: ReferenceSolver, petals: int) -> None:
     """Known by a recursion that has nothing to do with the search."""
     instance = hub(petals, petals, 4)
     assert instance.known is not None and instance.known.paper is not None
-    answer = SOLVER.minimize(instance, Options())
+    answer = solver.minimize(instance, Options())
     assert segments(instance, answer) == answer.lower_bound == instance.known.paper.segments
 
 
 def test_strands_reach_divisions_of_the_surface() -> None:
     """Red and blue pass side by side through one edge: below the paper's minimum."""
     instance = Instance.read(PAPER / "parallel-corridors.json")
-    assert segments(instance, SOLVER.minimize(instance, Options())) == 3
-    answer = SOLVER.minimize(instance, SURFACE)
+    assert segments(instance, COVERED.minimize(instance, Options())) == 3
+    answer = COVERED.minimize(instance, SURFACE)
     assert segments(instance, answer, strands=2) == answer.lower_bound == 2
+    answer = SOLVER.minimize(instance, SURFACE)
+    assert (segments(instance, answer, strands=2), answer.lower_bound) == (2, 1)
 
 
 def test_bound_in_surface_is_not_the_minimum_of_two_strands() -> None:
     """The minimum with k strands is proved for k strands only: the bound stays what covers say."""
-    instance = Instance.read(PAPER / "annulus.json")
-    answer = SOLVER.minimize(instance, SURFACE)
+    instance = Instance.read(PAPER / "figeasycell4.json")
+    answer = COVERED.minimize(instance, SURFACE)
     assert segments(instance, answer, strands=2) == 3
     assert answer.lower_bound == 2
 
 
 def test_seams_have_enough_strands() -> None:
     annulus = Instance.read(PAPER / "annulus.json")  # 4 live darts around, 1 inside
-    assert Graphs(annulus, 1).sufficient_seam_strands(1) == [5 // 2 - 1]
-    assert Graphs(annulus, 2).sufficient_seam_strands(1) == [10 // 2 - 1]
+    assert Graph(annulus, 1).sufficient_seam_strands(1) == [5 // 2 - 1]
+    assert Graph(annulus, 2).sufficient_seam_strands(1) == [10 // 2 - 1]
     three = Instance.read(PAPER / "three-loops.json")  # 8 live darts, then 8 + 2 * 4
-    assert Graphs(three, 1).sufficient_seam_strands(0) == [4, 8]
+    assert Graph(three, 1).sufficient_seam_strands(0) == [4, 8]
 
 
 @pytest.mark.parametrize(
@@ -273,13 +274,13 @@ def test_order_of_loops_does_not_matter(name: str, cell: int, minimum: int) -> N
         cells = list(instance.cells)
         cells[cell] = replace(cells[cell], loops=tuple(turned_loop(loop, rng) for loop in loops))
         other = replace(instance, cells=tuple(cells))
-        assert segments(other, SOLVER.minimize(other, Options())) == minimum
+        assert segments(other, COVERED.minimize(other, Options())) == minimum
 
 
 def test_seams_carry_what_must_pass() -> None:
     """Strands are added one by one, so seams that have some could not do without."""
     instance = Instance.read(PAPER / "three-loops.json")
-    answer = SOLVER.minimize(instance, Options())
+    answer = COVERED.minimize(instance, Options())
     assert segments(instance, answer) == 4
     assert len(answer.seams) == 2 and all(seam.strands > 0 for seam in answer.seams)
     assert {seam.id for seam in answer.seams} == {9, 10}  # above its 8 edges
