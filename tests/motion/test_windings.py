@@ -161,7 +161,7 @@ def test_the_few_samples_beyond_the_limits_are_kept_off() -> None:
     turned = np.deg2rad(np.append(np.linspace(-199.0, 199.0, 299), 201.0))[:, None]
     stroke = Stroke(0, 0, points, points, turned)
     samples = SimpleNamespace(points=points, faces=np.arange(300))
-    courses = SimpleNamespace(courses=[SimpleNamespace(samples=samples)])
+    courses = [SimpleNamespace(samples=samples)]
     refused: list[tuple[int, list[float], str]] = []
     refusals = SimpleNamespace(add=lambda face, at, why: refused.append((face, at.tolist(), why)))
     arguments: Any = (courses, [stroke], turning_by(200), refusals)
