@@ -21,13 +21,13 @@ from cellcolor.exports.joint_table import joints_csv
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import prepare
 from cellcolor.trajectory_checker.check import check_trajectory
-from cellcolor.trajectory_checker.claims import judge_left_out, judge_lift_offs
 from cellcolor.trajectory_checker.contact import Contact
 from cellcolor.trajectory_checker.covered import Coverage, failing_places
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.fine_mesh import refined
 from cellcolor.trajectory_checker.other_planners import completed
+from cellcolor.trajectory_checker.stated import judge_left_out, judge_lift_offs
 from cellcolor.trajectory_checker.tolerances import Limits
 
 
