@@ -12,7 +12,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.setup import Motion
 from cellcolor.trajectory_checker.contact import Contact
-from cellcolor.trajectory_checker.covered import FAR, NEAR, CoveredArea, covered_by, failing_places
+from cellcolor.trajectory_checker.covered import FAR, NEAR, TouchedArea, covered_by, failing_places
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
 from cellcolor.trajectory_checker.fine_mesh import FineMesh
 from cellcolor.trajectory_checker.repeated import Repeated, Strips, passes, repeated_stretches
@@ -100,7 +100,7 @@ def _thinned(contact: Contact, spacing: float) -> Mask:
     return kept
 
 
-def _note_uncovered(coverage: CoveredArea, limits: Limits, faults: FaultList) -> None:
+def _note_uncovered(coverage: TouchedArea, limits: Limits, faults: FaultList) -> None:
     """Note parts as large as a footprint that no pass comes near, and shares that are too low."""
     spacing, uncovered = coverage.spacing, coverage.uncovered
     for area, place in coverage.patches(uncovered):

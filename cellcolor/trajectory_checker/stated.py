@@ -11,7 +11,7 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.trajectory_checker.covered import CoveredArea
+from cellcolor.trajectory_checker.covered import TouchedArea
 from cellcolor.trajectory_checker.dense import angles
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import POSE_ANGLE, POSE_DISTANCE
@@ -118,7 +118,7 @@ def judge_lift_offs(trajectory: Trajectory, minimum: int | None, faults: FaultLi
 
 
 def judge_left_out(
-    trajectory: Trajectory, coverage: CoveredArea, failing: Mask, faults: FaultList
+    trajectory: Trajectory, coverage: TouchedArea, failing: Mask, faults: FaultList
 ) -> None:
     """Note stated places that could have been covered, and stated areas that are not true.
 
