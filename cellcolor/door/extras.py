@@ -26,13 +26,12 @@ _EXTRAS = {
     "scipy": "frontend",
     "trimesh": "frontend",
     "gpytoolbox": "parts",
-    "ompl": "motion",
     "potpourri3d": "motion",
     "mcap": "motion",
 }
 DISTRIBUTIONS = (
     *("click", "networkx", "numpy", "ortools", "pydantic", "rich"),
-    *("pin", "python-fcl", "libigl", "scipy", "trimesh", "EAIK", "ompl", "potpourri3d", "mcap"),
+    *("pin", "python-fcl", "libigl", "scipy", "trimesh", "EAIK", "potpourri3d", "mcap"),
     *("gpytoolbox", "matplotlib", "plotly"),
     *("clingo", "highspy", "pychoco", "pyscipopt", "python-sat", "dask", "distributed"),
 )

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 Range = tuple[float, float]
 
 _CLOSER = (0.3, 0.15, 0.08, 0.04, 0.02)
-"""Shares of the ranges, of the boxes around the best placements; by measure (docs/place.md)."""
+"""Shares of the ranges, of the boxes around the best placements; by measure (docs/questions.md)."""
 
 _AROUND = 3  # placements that get boxes
 _NEXT = 0.05  # of the ranges; of placements nearer to each other one is enough
