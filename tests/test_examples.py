@@ -14,7 +14,7 @@ pytestmark = pytest.mark.second
 
 FOLDER = TOP / "examples"
 FILES = sorted(FOLDER.glob("*.py"))
-LONG = ("plan_a_motion", "move_the_part", "which_arm")
+LONG = ("plan_a_motion", "move_the_part")
 RUNS = [
     pytest.param(file, id=file.stem, marks=[pytest.mark.slow] * (file.stem in LONG))
     for file in FILES
