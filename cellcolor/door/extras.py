@@ -25,13 +25,12 @@ _EXTRAS = {
     "scipy": "frontend",
     "trimesh": "frontend",
     "gpytoolbox": "parts",
-    "ompl": "motion",
     "potpourri3d": "motion",
     "mcap": "motion",
 }
 DISTRIBUTIONS = (
     *("click", "networkx", "numpy", "ortools", "pydantic", "rich"),
-    *("pin", "python-fcl", "scipy", "trimesh", "EAIK", "ompl", "potpourri3d", "mcap"),
+    *("pin", "python-fcl", "scipy", "trimesh", "EAIK", "potpourri3d", "mcap"),
     *("gpytoolbox", "matplotlib", "plotly"),
     *("clingo", "highspy", "pychoco", "pyscipopt", "python-sat", "dask", "distributed"),
 )

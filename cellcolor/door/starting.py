@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 _FLANGES = ("tool0", "flange", "ee_link", "wrist_3_link", "tool_flange")
 _FAMILIES = ("ur", "eaik", "offset-wrist")  # the second says most about an arm that fits none
-_NEEDED = ("pinocchio", "fcl", "trimesh", "scipy", "ompl")
+_NEEDED = ("pinocchio", "fcl", "trimesh", "scipy")
 _JOINTS, _ACCELERATION = 6, 5.0  # rad/s^2, which most arms of a meter can
 _ALONG = 1e-3  # rad; an axis so near to another one is along it
 _AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense

@@ -1,7 +1,7 @@
 """A triangle mesh as a value: what follows from it is computed once, when it is first asked for.
 
 Nothing here takes a mesh for a manifold: an edge may have any number of triangles. The judge of
-trajectories measures on a mesh of its own (``cellcolor.trajectory_checker.fine_mesh``).
+trajectories measures on a mesh of trimesh (``cellcolor.trajectory_checker.fine_mesh``).
 """
 
 from __future__ import annotations

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
-from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, RepeatedStretch, Trajectory
+from cellcolor.data.trajectory import ExtraLiftOff, RepeatedStretch, Trajectory
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.setup import Motion
 from cellcolor.motion.retraced import retraced, stretches
 from cellcolor.motion.strokes import Parting, Stroke
 from cellcolor.motion.timing import Speeds, timed
@@ -38,31 +38,21 @@ class _Rows:
 
 
 def assembled(
-    name: str,
     robot: Robot,
+    motion: Motion,
+    speeds: Speeds,
     strokes: Sequence[Stroke],
     transfers: Sequence[Transfer],
-    speeds: Speeds,
-    tool_speed: float,
-    approach_speed: float,
-    spacing: float,
-    left_out: tuple[LeftOut, ...],
-    meta: dict[str, Any],
     deadline: Deadline,
 ) -> Trajectory:
     """The trajectory: every stroke, and every planned motion in between, from rest to rest.
 
     Args:
-        name: what to call it.
         robot: the arm.
+        motion: of the setup; by the distance between passes it decides what is passed twice.
+        speeds: of the joints.
         strokes: in their order.
         transfers: the way to the first stroke, those between strokes, and that from the last one.
-        speeds: of the joints.
-        tool_speed: of the tool in contact, m/s.
-        approach_speed: of the tool shortly before and after contact, m/s.
-        spacing: desired between passes, m; it decides what counts as passed twice.
-        left_out: parts that the tool does not visit.
-        meta: as of the trajectory.
         deadline: when to give up.
 
     Raises:
@@ -73,7 +63,8 @@ def assembled(
     extra: list[ExtraLiftOff] = []
     repeated: list[RepeatedStretch] = []
     last_of: dict[int, int] = {}
-    marked = _retraced(strokes, spacing)
+    approach = motion.approach_speed_m_per_s or motion.speed_m_per_s
+    marked = _retraced(strokes, motion.spacing_m)
     # Why segments have more than one stroke, as often as they have more.
     partings: dict[int, list[Parting]] = {}
     for stroke in strokes:
@@ -83,7 +74,7 @@ def assembled(
         deadline.check()
         at_stroke = 1 if number else 0  # the first sample is the stroke's last one
         gap = _add_transfer(
-            rows, robot, transfer, at_stroke, number < len(strokes), speeds, approach_speed
+            rows, robot, transfer, at_stroke, number < len(strokes), speeds, approach
         )
         if gap is not None:
             unplanned[gap] = transfer.blocked
@@ -94,7 +85,7 @@ def assembled(
             why = partings[stroke.segment].pop(0)
             last = last_of[stroke.segment]
             extra.append(ExtraLiftOff(last, stroke.segment, why.reason, why.text, why.place))
-        times = rows.now + timed(stroke.joints, speeds, stroke.points, tool_speed)
+        times = rows.now + timed(stroke.joints, speeds, stroke.points, motion.speed_m_per_s)
         repeated += [
             RepeatedStretch(rows.count + a, rows.count + b, "beside another pass")
             for a, b in stretches(marked[number])
@@ -104,7 +95,7 @@ def assembled(
         last_of[stroke.segment] = rows.count - 1
     times, joints, points, normals, segment = map(np.concatenate, zip(*rows.parts, strict=True))
     return Trajectory(
-        name=name,
+        name="",
         joint_names=robot.joint_names,
         times=times,
         joints=joints,
@@ -114,9 +105,8 @@ def assembled(
         segment=segment,
         unplanned=tuple(unplanned),
         extra_lift_offs=tuple(extra),
-        left_out=left_out,
         repeated=tuple(repeated),
-        meta=meta | ({"blocked": list(unplanned.values())} if unplanned else {}),
+        meta={"blocked": list(unplanned.values())} if unplanned else {},
     )
 
 

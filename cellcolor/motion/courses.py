@@ -25,7 +25,6 @@ from cellcolor.motion.following import (
 from cellcolor.motion.refusing import ArmRefusals
 from cellcolor.motion.samples import Samples, even_places, sampled, with_normals_of
 from cellcolor.motion.small_triangles import JUMP
-from cellcolor.motion.steady import steady
 from cellcolor.tool_paths.cover import Covered
 
 _ROUNDS = 5  # of paths laid out; what still fails on the last ones is cut out of them
@@ -43,19 +42,6 @@ class Course:
     followed: Followed
 
 
-@dataclass(frozen=True)
-class Courses:
-    """The tool paths of one segment, and the arm on them.
-
-    Attributes:
-        covered: what was laid out.
-        courses: one of each path.
-    """
-
-    covered: Covered
-    courses: tuple[Course, ...]
-
-
 def laid_out(
     prepared: PreparedScene,
     surface: LabelledSurface,
@@ -64,7 +50,7 @@ def laid_out(
     lay: Callable[[], Covered],
     refusals: ArmRefusals,
     deadline: Deadline,
-) -> Courses:
+) -> tuple[Covered, list[Course]]:
     """Lay out the paths of a segment, and again without the places where a sample fails.
 
     Args:
@@ -77,7 +63,8 @@ def laid_out(
         deadline: when to give up.
 
     Returns:
-        Paths on which hardly any sample fails; the caller cuts out those that still do.
+        What was laid out, and the arm on each path. Hardly any sample fails; the caller cuts out
+        those that still do.
 
     Raises:
         OutOfTime: the deadline came first.
@@ -96,7 +83,7 @@ def laid_out(
                     refusals.add(int(samples.faces[at]), samples.points[at], why)
         if good:
             break
-    return Courses(covered, tuple(courses))
+    return covered, courses
 
 
 def _course(
@@ -115,10 +102,9 @@ def _course(
     between them fails a test. A step that still does on the last round is torn.
     """
 
-    def on_surface(places: Array) -> Samples:
+    def at(places: Array) -> Samples:
         return with_normals_of(sampled(path, places), surface.mesh, normals)
 
-    at = steady(on_surface, float(places[-1]))
     samples = at(places)
     followed = follow(prepared, samples, branch, deadline)
     for halvings in range(_HALVINGS + 1):
@@ -129,7 +115,7 @@ def _course(
         for share in _BETWEEN:
             way = joints[:-1] + share * np.diff(joints, axis=0)
             inner = places[:-1] + share * np.diff(places)
-            bad |= off_way(prepared.robot, way, at(inner), on_surface(inner).normals)
+            bad |= off_way(prepared.robot, way, at(inner))
         ends = valid[:-1] & valid[1:] & ~torn
         bad &= ends
         if not bad.any():

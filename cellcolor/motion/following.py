@@ -24,8 +24,7 @@ _BOW_ANGLE = float(np.deg2rad(0.5))  # of the tool's axis
 _ROUNDING = 1e-6  # m
 _OFF = 4e-4  # m, of the tip off the surface; the judge allows a millimeter
 _FAR_TURN, _FAR_SLIDE = float(np.deg2rad(1.0)), 0.001  # rad, m; what no joint passes untested
-_TILT = float(np.deg2rad(0.6))  # of the tool's axis off the intended one
-_TILT_OFF_SURFACE = float(np.deg2rad(0.9))  # off the surface's normal; the judge allows a degree
+_TILT = float(np.deg2rad(0.6))  # of the tool's axis off the normal; the judge allows a degree
 
 
 @dataclass(frozen=True)
@@ -94,18 +93,16 @@ def bowed(robot: Robot, joints: Array) -> Mask:
     return np.asarray((off > too_far) | (angles_between(middle.tool_axis, axis) > _BOW_ANGLE))
 
 
-def off_way(robot: Robot, joints: Array, samples: Samples, surface_normals: Array) -> Mask:
+def off_way(robot: Robot, joints: Array, samples: Samples) -> Mask:
     """Which configurations (k, joints) have tip or axis off the sample (k) that they are meant for.
 
-    Of the tip only the distance along the normal counts. The axis must not be far off the normals
-    (k, 3) of the surface either, where those of the samples are others.
+    Of the tip only the distance along the normal counts.
     """
     poses = forward(robot, joints)
     lifted = np.einsum("ij,ij->i", poses.tip - samples.points, samples.normals)
     off = np.abs(lifted) > _OFF
     if robot.task.direction:
         off |= angles_between(poses.tool_axis, -samples.normals) > _TILT
-        off |= angles_between(poses.tool_axis, -surface_normals) > _TILT_OFF_SURFACE
     return np.asarray(off)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -69,7 +69,7 @@ def plan_motion(
         built: the scene and its labelled surface.
         painted: its surface in segments.
         pattern: of the tool paths.
-        seed: of the sampling planner; the same seed gives the same motion.
+        seed: of the configurations that moves may lead over; the same seed gives the same motion.
         deadline: when to give up.
         progress: told the name of each stage as it begins.
         on_paths: called with the tool paths once they are laid, before the arm moves on them.
@@ -98,33 +98,33 @@ def plan_motion(
     ground = Ground(
         prepared,
         Segments(surface, segment_of, color_of, normals),
-        small,
         states,
         pattern,
         motion,
         deadline,
     )
     with clock.timed("tool paths"):
-        covered = [
+        found = [
             strokes_of(ground, segment, int(own_branch[segment]))
             for segment in np.unique(segment_of[segment_of >= 0]).tolist()
         ]
-    measures = [one for segment in covered for one in segment.courses.covered.measures]
+    covered = [laid for laid, _, _ in found]
+    measures = [one for laid in covered for one in laid.measures]
     paths = ToolPaths(
         surface.name,
         pattern,
         motion.spacing_m,
         motion.tool_radius_m,
-        tuple(path for segment in covered for path in segment.courses.covered.paths.paths),
+        tuple(path for laid in covered for path in laid.paths.paths),
         surface.sha256,
     )
     if on_paths is not None:
         on_paths(paths, tuple(measures))
-    strokes = [stroke for segment in covered for stroke in segment.strokes]
+    strokes = [stroke for _, own, _ in found for stroke in own]
     left_out = tuple(
         LeftOut(place.segment, place.area_m2, place.cause, place.place)
-        for one in covered
-        for place in one.courses.covered.uncovered
+        for laid in covered
+        for place in laid.uncovered
     )
     left_out = tuple(sorted(left_out, key=lambda part: (-part.area_m2, part.segment, part.place)))
     if not strokes:
@@ -134,24 +134,18 @@ def plan_motion(
     with clock.timed("transfers"):
         strokes, transfers = planner.between_strokes(strokes)
     with clock.timed("times"):
-        trajectory = assembled(
-            surface.name,
-            prepared.robot,
-            strokes,
-            transfers,
-            speeds,
-            motion.speed_m_per_s,
-            motion.approach_speed_m_per_s or motion.speed_m_per_s,
-            motion.spacing_m,
-            left_out,
-            {"pattern": pattern, "seed": seed},
-            deadline,
-        )
+        trajectory = assembled(prepared.robot, motion, speeds, strokes, transfers, deadline)
+    trajectory = replace(
+        trajectory,
+        name=surface.name,
+        left_out=left_out,
+        meta={"pattern": pattern, "seed": seed} | trajectory.meta,
+    )
     return MotionPlan(
         paths,
         tuple(measures),
         trajectory,
-        tuple(edge for segment in covered if segment.walls for edge in segment.walls.edges),
+        tuple(edge for _, _, walls in found for edge in walls),
         _cut_off(strokes, transfers, color_of, planner.home is not None),
     )
 

@@ -32,7 +32,6 @@ class ArmRefusals:
         self,
         prepared: PreparedScene,
         branch: int,
-        small: SmallTriangles,
         states: CornerStates,
         segment: int,
         touched: Mask,
@@ -47,6 +46,7 @@ class ArmRefusals:
         """
         self._prepared, self._branch, self._deadline = prepared, branch, deadline
         self.names = (*prepared.judge.reason_names, JUMP, FOLDED)
+        small = states.small
         self._folded = _folded(small, touched) if prepared.robot.task.direction else []
         self.doubtful = set(self._folded)
         self._failed: list[tuple[Array, int]] = []

@@ -13,12 +13,12 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
-from cellcolor.motion.courses import Courses, laid_out
+from cellcolor.motion.courses import Course, laid_out
 from cellcolor.motion.following import joint_space
 from cellcolor.motion.refusing import ArmRefusals
-from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
+from cellcolor.motion.small_triangles import CornerStates
 from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
-from cellcolor.motion.windings import Walls, parts_of, walls_of
+from cellcolor.motion.windings import parts_of, walls_of
 from cellcolor.tool_paths.cover import Bounds, Covered, cover
 from cellcolor.tool_paths.overlap import Overlap
 from cellcolor.tool_paths.region import Segments
@@ -38,8 +38,7 @@ class Ground:
     Attributes:
         prepared: the scene.
         segments: of the painted surface.
-        small: its small triangles.
-        states: what the arm does at their corners.
+        states: what the arm does at the corners of its small triangles.
         pattern: of the tool paths.
         motion: of the setup.
         deadline: when to give up.
@@ -47,29 +46,15 @@ class Ground:
 
     prepared: PreparedScene
     segments: Segments
-    small: SmallTriangles
     states: CornerStates
     pattern: str
     motion: Motion
     deadline: Deadline
 
 
-@dataclass(frozen=True)
-class SegmentStrokes:
-    """How a segment is covered.
-
-    Attributes:
-        courses: its tool paths, and the arm on them.
-        strokes: on these, each within the limits of the joints.
-        walls: put up so that the joints stay in their limits; None if none were needed.
-    """
-
-    courses: Courses
-    strokes: list[Stroke]
-    walls: Walls | None
-
-
-def strokes_of(ground: Ground, segment: int, branch: int) -> SegmentStrokes:
+def strokes_of(
+    ground: Ground, segment: int, branch: int
+) -> tuple[Covered, list[Stroke], Collection[tuple[int, int]]]:
     """Lay out a segment's paths so that the arm can follow them, and follow them.
 
     They go beyond the segment's border if neighbors are to overlap and one stroke is enough then.
@@ -80,25 +65,29 @@ def strokes_of(ground: Ground, segment: int, branch: int) -> SegmentStrokes:
         segment: its number.
         branch: of its color.
 
+    Returns:
+        Its tool paths, the strokes on them, each within the limits of the joints, and the walls,
+        mesh edges, that were put up for that.
+
     Raises:
         OutOfTime: the deadline came first.
     """
     prepared, surface, motion = ground.prepared, ground.segments.surface, ground.motion
-    small, space = ground.small, joint_space(prepared)
+    small, space = ground.states.small, joint_space(prepared)
     own = ground.segments.segment_of == segment
     alone = ground.segments._replace(segment_of=np.where(own, segment, -1))
 
     def refused_near(touched: Mask) -> ArmRefusals:
         around = _AROUND * motion.spacing_m
         return ArmRefusals(
-            prepared, branch, small, ground.states, segment, touched, around, ground.deadline
+            prepared, branch, ground.states, segment, touched, around, ground.deadline
         )
 
     def courses_with(
         refusals: ArmRefusals,
         walls: Collection[tuple[int, int]] = (),
         overlap: Overlap | None = None,
-    ) -> Courses:
+    ) -> tuple[Covered, list[Course]]:
         def lay() -> Covered:
             return cover(
                 alone,
@@ -115,19 +104,19 @@ def strokes_of(ground: Ground, segment: int, branch: int) -> SegmentStrokes:
     if motion.overlap_m:
         overlap = Overlap.of(ground.segments, segment, motion.overlap_m)
         refusals = refused_near(overlap.widened(surface, own))
-        courses = courses_with(refusals, overlap=overlap)
+        covered, courses = courses_with(refusals, overlap=overlap)
         strokes = _on(ground, courses, branch)
         if len(strokes) == 1 and space.fits(strokes[0].joints):
-            return SegmentStrokes(courses, strokes, None)
+            return covered, strokes, ()
     refusals = refused_near(own)
-    courses = courses_with(refusals)
+    covered, courses = courses_with(refusals)
     strokes = _on(ground, courses, branch)
     if all(space.fits(stroke.joints) for stroke in strokes):
-        return SegmentStrokes(courses, strokes, None)
+        return covered, strokes, ()
     color = ground.segments.colors[segment]
     cracks = [crack for crack in surface.cracks if color in crack.colors]
     closed = small.whole.marked([(crack.i, crack.j) for crack in cracks])
-    parts = parts_of(small, ground.states, segment, closed)
+    parts = parts_of(ground.states, segment, closed)
     walls = walls_of(parts, small.whole, space, ground.deadline)
     if not walls.whole:
         # Some part reaches beyond the limits; only what does is left out, not the whole part.
@@ -136,7 +125,7 @@ def strokes_of(ground: Ground, segment: int, branch: int) -> SegmentStrokes:
         refusals.keep_inside(parts.part_of, walls.turns)
     parted = len(strokes)
     for _ in range(_ROUNDS):
-        courses = courses_with(refusals, walls.edges)
+        covered, courses = courses_with(refusals, walls.edges)
         strokes = _on(ground, courses, branch)
         if not _refuse_what_is_beyond(courses, strokes, space, refusals):
             break
@@ -150,11 +139,11 @@ def strokes_of(ground: Ground, segment: int, branch: int) -> SegmentStrokes:
         for stroke in strokes
         for part in cut_where_full(stroke, space, prepared.robot.joint_names)
     ]
-    return SegmentStrokes(courses, _worth_a_lift_off(cut, motion.spacing_m), walls)
+    return covered, _worth_a_lift_off(cut, motion.spacing_m), walls.edges
 
 
 def _refuse_what_is_beyond(
-    courses: Courses, strokes: list[Stroke], space: JointSpace, refusals: ArmRefusals
+    courses: list[Course], strokes: list[Stroke], space: JointSpace, refusals: ArmRefusals
 ) -> bool:
     """Keep paths off the few samples at which a stroke is beyond the limits; whether there are any.
 
@@ -165,7 +154,7 @@ def _refuse_what_is_beyond(
     beyond = np.concatenate([np.empty((0, 3)), *points])
     if not 0 < len(beyond) <= _FEW * sum(len(stroke) for stroke in strokes):
         return False
-    samples = [course.samples for course in courses.courses]
+    samples = [course.samples for course in courses]
     faces = np.concatenate([own.faces for own in samples])
     nearest = cKDTree(np.concatenate([own.points for own in samples])).query(beyond)[1]
     for face, point in zip(faces[nearest].tolist(), beyond, strict=True):
@@ -173,12 +162,12 @@ def _refuse_what_is_beyond(
     return True
 
 
-def _on(ground: Ground, courses: Courses, branch: int) -> list[Stroke]:
+def _on(ground: Ground, courses: list[Course], branch: int) -> list[Stroke]:
     """The strokes on all paths of a segment, what fails cut out of them."""
     found: list[Stroke] = []
     names, space = ground.prepared.judge.reason_names, joint_space(ground.prepared)
     spacing = ground.motion.spacing_m
-    for course in courses.courses:
+    for course in courses:
         segment = course.path.segment
         parts = trimmed(segment, branch, course.samples, course.followed, spacing, names, space)
         if parts and found:

@@ -65,6 +65,7 @@ class CornerStates:
     """What the arm can do at the corners of small triangles, in the color of their segment.
 
     Attributes:
+        small: the small triangles.
         joints: (6 m, 3, joints) in rad or m, those of the second and the third corner unwound
             from the first; NaN without solution or segment.
         reasons: (6 m, 3) codes of the judge: the first test that each corner fails.
@@ -72,6 +73,7 @@ class CornerStates:
         wound: (6 m,) whether the angles do not return after one turn: the branch jumps inside.
     """
 
+    small: SmallTriangles
     joints: Array
     reasons: NDArray[np.uint8]
     space: JointSpace
@@ -114,4 +116,4 @@ def corner_states(
     wound[own] = (np.abs(space.periods(out + across + back)) > 0).any(axis=1)  # NaN is not
     joints = np.full((len(small.corners), 3, found.shape[1]), np.nan)
     joints[own] = np.stack([one, one + out, one - back], axis=1)
-    return CornerStates(joints, reasons, space, wound)
+    return CornerStates(small, joints, reasons, space, wound)

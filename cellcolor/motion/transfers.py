@@ -18,7 +18,7 @@ from cellcolor.motion.home import home_of
 from cellcolor.motion.samples import DISTANCE
 from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.turns import Visit, chosen_turns
-from cellcolor.motion.ways import FEW_ROUNDS, MANY_ROUNDS, Transfer, Ways
+from cellcolor.motion.ways import FEW, MANY, Transfer, Ways
 
 # Bounds in rad are in units of a slide as well (JointSpace.units).
 _FASTER = 0.3  # rad; from one sample of a retreat to the next a branch that jumps moves farther
@@ -83,7 +83,7 @@ class Transfers:
         seed: int,
         deadline: Deadline,
     ) -> None:
-        """``velocities`` (joints,) in rad/s or m/s; ``seed`` is that of the sampling planner.
+        """``velocities`` (joints,) in rad/s or m/s; ``seed`` is that of drawn configurations.
 
         Raises:
             InputError: the home position is not free.
@@ -134,8 +134,8 @@ class Transfers:
         best = min(tried, key=lambda one: len(one.gaps))
         transfers = list(best.transfers)
         for gap in best.gaps:
-            rounds = max(FEW_ROUNDS, MANY_ROUNDS // len(best.gaps))
-            transfers[gap] = self._joined(*best.retreats[gap], rounds)
+            drawn = max(FEW, MANY // len(best.gaps))
+            transfers[gap] = self._joined(*best.retreats[gap], drawn)
         return best.strokes, transfers
 
     def _visit(self, one: _Reachable) -> Visit:
@@ -283,7 +283,7 @@ class Transfers:
             return way
         return self._cut(way[: max(1, int(np.argmin(inside)))])
 
-    def _joined(self, off: Array, onto: Array, rounds: int = FEW_ROUNDS) -> Transfer:
+    def _joined(self, off: Array, onto: Array, drawn: int = FEW) -> Transfer:
         """Along one retreat, freely to the end of another one, and back along that.
 
         Of the first and the last move without a home only the one retreat.
@@ -292,7 +292,7 @@ class Transfers:
             return Transfer(np.concatenate([off, onto[::-1]]))
         if len(off) == 1 and len(onto) == 1:
             off = np.concatenate([off, off])  # so that there is a sample without contact
-        between = self._ways.between(off[-1], onto[-1], rounds)
+        between = self._ways.between(off[-1], onto[-1], drawn)
         joints = np.concatenate([off[:-1], between.joints, onto[:-1][::-1]])
         gap = None if between.gap is None else len(off) - 1 + between.gap
         return Transfer(joints, gap, between.blocked)

@@ -1,4 +1,4 @@
-"""Ways through free space from one configuration to another: straight, over stops, or sampled."""
+"""Ways through free space from one configuration to another: straight, or over others."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from cellcolor.arrays import Array, Mask, angles_between
@@ -17,19 +18,18 @@ from cellcolor.frontend.setup import Motion
 from cellcolor.motion.following import joint_space
 from cellcolor.motion.free_space import FreeSpace
 from cellcolor.motion.samples import DISTANCE, TURN
-from cellcolor.motion.sampling_planner import sampled_way
 
 # Bounds in rad are in units of a slide as well (JointSpace.units).
 _SHARES = (1.0, 0.4, 0.1)  # of the clearance that the ends of a way keep, the most that they can
-FEW_ROUNDS, MANY_ROUNDS = 600, 6_000
-"""Of the sampling planner: seconds, or half a minute."""
+FEW, MANY = 250, 2_000
+"""Configurations drawn for one move: seconds, or half a minute."""
 _ROOM = 0.999  # of the largest steps, for rounding
 _COARSE = 0.04  # rad, between samples of a move that is only tried
-_FINE = 0.01  # rad, the same where that let a hit through
 _DRAWN, _STOPS = 256, 40  # configurations drawn for a map of free ones, and kept in it
 _WIDER = 0.7  # rad; around the ends of all retreats they are drawn from
 _LIFTED = 4  # heights above each retreat that are in it, a retreat apart
-_TESTS = 150  # moves of that map that are tested for one transfer
+_NEIGHBORS = 100  # of a configuration in a map, that moves lead to
+_TESTS, _MOST_TESTS = 4, 1_000  # moves of a map that are tested, for each of its configurations
 _SPARE = 0.005  # m, more than the clearance that is kept while a way is looked for
 _NEAR = 0.3  # rad; this close to its ends a transfer keeps only the clearance that these keep
 _BREAK = 0.2  # s; what a stop on the way costs
@@ -68,7 +68,7 @@ class Ways:
         seed: int,
         deadline: Deadline,
     ) -> None:
-        """``velocities`` (joints,) in rad/s or m/s; ``seed`` is that of the sampling planner."""
+        """``velocities`` (joints,) in rad/s or m/s; ``seed`` is that of drawn configurations."""
         self._prepared, self._motion, self._velocities = prepared, motion, velocities
         self._home, self._seed, self._deadline = home, seed, deadline
         self.levels = [FreeSpace(prepared, motion.clearance_m, share) for share in _SHARES]
@@ -92,12 +92,12 @@ class Ways:
         each = (level for level, free in enumerate(self.levels) if free.clear(joints[None])[0])
         return next(each, len(_SHARES))
 
-    def between(self, start: Array, end: Array, rounds: int) -> Transfer:
-        """Straight for the joints, or over free configurations, or as sampled, or not at all.
+    def between(self, start: Array, end: Array, drawn: int) -> Transfer:
+        """Straight for the joints, or over free configurations, or not at all.
 
         Args:
             start, end: (joints,) both inside the limits.
-            rounds: of the sampling planner, at most.
+            drawn: configurations, to be led over where the known stops do not do.
 
         Raises:
             OutOfTime: the deadline came first.
@@ -109,19 +109,12 @@ class Ways:
         near = self.levels[max(levels)]
         for over in (self._clear, near) if max(levels) else (self._clear,):
             free = self._ramped(over, near, start, end)
-            found = self._over_stops(start, end, free)
-            if found is not None:
-                return Transfer(found)
-            roomy = self._ramped(self._wide, near, start, end) if over is self._clear else free
-            most = rounds if over is near else FEW_ROUNDS
-            for tested, step, most_rounds in ((roomy, _COARSE, FEW_ROUNDS), (free, _FINE, most)):
-                corners = sampled_way(
-                    start, end, self.space, tested, step, most_rounds, self._seed, self._deadline
-                )
-                self._deadline.check()
-                if corners is not None and free(way := self._dense(corners)).all():
-                    self._stops += list(corners[1:-1])
-                    return Transfer(way)
+            roomy = self._wide if over is self._clear else over
+            for more in (0, drawn):
+                stops = [*self._stops, *self._drawn([start, end], more, roomy)]
+                found = self._over_stops(start, end, stops, free)
+                if found is not None:
+                    return Transfer(found)
         straight = self._dense(np.array([start, end]))
         return Transfer(np.array([start, end]), 0, self._bodies(straight[~self._clear(straight)]))
 
@@ -167,45 +160,36 @@ class Ways:
     def _free_stops(self, ends: Sequence[Array]) -> list[Array]:
         """Free configurations that ways may lead over: home, and some about the strokes' ends."""
         stops = [] if self._home is None else [self._home]
-        around = np.array([*ends, *stops])
-        low = np.maximum(around.min(axis=0) - _WIDER * self.space.units, self.space.lower)
-        high = np.minimum(around.max(axis=0) + _WIDER * self.space.units, self.space.upper)
-        drawn = np.random.default_rng(self._seed).uniform(low, high, (_DRAWN, len(low)))
-        return stops + list(drawn[self._wide(drawn)][:_STOPS])
+        return stops + self._drawn([*ends, *stops], _DRAWN, self._wide)[:_STOPS]
 
-    def _over_stops(self, start: Array, end: Array, free: Callable[[Array], Mask]) -> Array | None:
-        """The quickest way over stops whose straight moves are free, sampled; None without one.
+    def _drawn(self, around: Sequence[Array], count: int, free: FreeSpace) -> list[Array]:
+        """The free ones of some configurations drawn around others."""
+        space, places = self.space, np.array(around)
+        low = np.maximum(places.min(axis=0) - _WIDER * space.units, space.lower)
+        high = np.minimum(places.max(axis=0) + _WIDER * space.units, space.upper)
+        drawn = np.random.default_rng(self._seed).uniform(low, high, (count, len(low)))
+        return list(drawn[free(drawn)])
 
-        Moves are tested only where they are on the quickest way that is left (Bohlin and Kavraki,
-        Path planning using lazy PRM, 2000).
-        """
-        nodes = np.array([start, end, *self._stops])
+    def _over_stops(
+        self, start: Array, end: Array, stops: Sequence[Array], free: Callable[[Array], Mask]
+    ) -> Array | None:
+        """The quickest way over stops whose straight moves are free, sampled; None without one."""
+        nodes = np.array([start, end, *stops])
         seconds = (np.abs(nodes[:, None] - nodes[None]) / self._velocities).max(axis=2)
-        seconds += _BREAK * ~np.eye(len(nodes), dtype=bool)
         tested: dict[tuple[int, int], Array] = {}
-        for _ in range(_TESTS):
-            self._deadline.check()
-            lengths, before = dijkstra(seconds, indices=0, return_predecessors=True)
-            if not np.isfinite(lengths[1]):
-                return None
-            way = [1]
-            while way[-1]:
-                way.append(int(before[way[-1]]))
-            moves = list(pairwise(way[::-1]))
-            untested = next((move for move in moves if move not in tested), None)
-            if untested is None:
-                return np.concatenate([nodes[:1], *(tested[move][1:] for move in moves)])
-            one, other = untested
+
+        def is_free(one: int, other: int) -> bool:
             count = max(2, int(np.ceil(self.space.largest(nodes[other] - nodes[one]) / _COARSE)))
             share = np.linspace(0.0, 1.0, count + 1)[:, None]
-            is_free = bool(free(nodes[one] + share * (nodes[other] - nodes[one])).all())
-            if is_free:
-                tested[untested] = self._dense(nodes[[one, other]])
-                is_free = bool(free(tested[untested]).all())
-            if not is_free:
-                tested.pop(untested, None)
-                seconds[one, other] = seconds[other, one] = 0.0  # no edge, in scipy's words
-        return None
+            if not free(nodes[one] + share * (nodes[other] - nodes[one])).all():
+                return False
+            tested[one, other] = self._dense(nodes[[one, other]])
+            return bool(free(tested[one, other]).all())
+
+        way = quickest_way(seconds + _BREAK, is_free, self._deadline)
+        if way is None:
+            return None
+        return np.concatenate([nodes[:1], *(tested[move][1:] for move in pairwise(way))])
 
     def _dense(self, corners: Array) -> Array:
         """Samples (k, joints) of straight ways for the joints through corners (c, joints).
@@ -229,3 +213,43 @@ class Ways:
                 count = int(np.ceil(count * excess / _ROOM))
             parts.append(way[1:])
         return np.concatenate(parts)
+
+
+def quickest_way(
+    seconds: Array, is_free: Callable[[int, int], bool], deadline: Deadline
+) -> list[int] | None:
+    """The quickest way from the first node to the second, by its nodes; None if none is found.
+
+    Moves are tested only where they are on the quickest way that is left (Bohlin and Kavraki,
+    Path planning using lazy PRM, 2000). Beside those of the two ends, only moves to the nearest
+    nodes count.
+
+    Args:
+        seconds: (n, n) how long each move takes, above 0.
+        is_free: whether there is a move from one node to another; asked once of each.
+
+    Raises:
+        OutOfTime: the deadline came first.
+    """
+    kept = seconds.argsort(axis=1).argsort(axis=1) <= _NEIGHBORS
+    kept[:2], kept[:, :2] = True, True
+    graph = csr_array(np.where(kept | kept.T, seconds, 0.0))
+    known: set[tuple[int, int]] = set()
+    for _ in range(min(_TESTS * len(seconds), _MOST_TESTS)):
+        deadline.check()
+        lengths, before = dijkstra(graph, indices=0, return_predecessors=True)
+        if not np.isfinite(lengths[1]):
+            return None
+        way = [1]
+        while way[-1]:
+            way.append(int(before[way[-1]]))
+        way.reverse()
+        untested = next((move for move in pairwise(way) if move not in known), None)
+        if untested is None:
+            return way
+        if is_free(*untested):
+            known.add(untested)
+        else:
+            one, other = untested
+            graph[one, other] = graph[other, one] = np.inf
+    return None

@@ -38,7 +38,7 @@ if the time limit comes first."""
 
 _OWN = "own"  # the mesh of the scene itself
 _CLOSER = (0.3, 0.15, 0.08, 0.04, 0.02)
-"""Shares of the ranges, of the boxes around the best placements; by measure (docs/place.md)."""
+"""Shares of the ranges, of the boxes around the best placements; by measure (docs/questions.md)."""
 _AROUND = 3  # placements that get boxes
 _NEXT = 0.05  # of the ranges; of placements nearer to each other one is enough
 _BESIDE = 64  # samples of how far a placement may be off

@@ -11,12 +11,12 @@ from cellcolor.data.trajectory_verdict import CoveredArea
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.setup import Motion
-from cellcolor.trajectory_checker.claims import judge_left_out
 from cellcolor.trajectory_checker.contact import Contact
-from cellcolor.trajectory_checker.covered import FAR, NEAR, Coverage, covered_by, failing_places
+from cellcolor.trajectory_checker.covered import FAR, NEAR, CoveredArea, covered_by, failing_places
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
 from cellcolor.trajectory_checker.fine_mesh import FineMesh
 from cellcolor.trajectory_checker.repeated import Repeated, Strips, passes, repeated_stretches
+from cellcolor.trajectory_checker.stated import judge_left_out
 from cellcolor.trajectory_checker.tolerances import Limits
 
 _VISIT = 0.5  # spacings; a pass this close to a point is a visit of it
@@ -100,7 +100,7 @@ def _thinned(contact: Contact, spacing: float) -> Mask:
     return kept
 
 
-def _note_uncovered(coverage: Coverage, limits: Limits, faults: FaultList) -> None:
+def _note_uncovered(coverage: CoveredArea, limits: Limits, faults: FaultList) -> None:
     """Note parts as large as a footprint that no pass comes near, and shares that are too low."""
     spacing, uncovered = coverage.spacing, coverage.uncovered
     for area, place in coverage.patches(uncovered):

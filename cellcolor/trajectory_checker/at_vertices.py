@@ -16,9 +16,8 @@ from cellcolor.frontend.arm.inverse import is_tool_on_last_axis, pose_at_zero
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult
 from cellcolor.memory import chunks
-from cellcolor.trajectory_checker.dense import angles, joint_steps, poses_of
+from cellcolor.trajectory_checker.dense import across_of, angles, joint_steps, poses_of, turns_off
 from cellcolor.trajectory_checker.tolerances import AT_VERTEX, OFF_SURFACE, TILT, TURN
-from cellcolor.trajectory_checker.tool_turn import across_of, turns_off
 
 
 @dataclass(frozen=True)

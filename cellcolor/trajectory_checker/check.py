@@ -15,11 +15,9 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.trajectory_checker.area import judge_area
-from cellcolor.trajectory_checker.claims import judge_lift_offs
 from cellcolor.trajectory_checker.contact import contact_of
 from cellcolor.trajectory_checker.dense import densified, poses_of
 from cellcolor.trajectory_checker.fault_list import FaultList
-from cellcolor.trajectory_checker.file_poses import judge_poses
 from cellcolor.trajectory_checker.fine_mesh import refined
 from cellcolor.trajectory_checker.joint_motion import JointLimits, judge_joints
 from cellcolor.trajectory_checker.on_surface import (
@@ -28,6 +26,7 @@ from cellcolor.trajectory_checker.on_surface import (
     judge_dragged,
     judge_turn,
 )
+from cellcolor.trajectory_checker.stated import judge_lift_offs, judge_poses
 from cellcolor.trajectory_checker.tolerances import OFF_SURFACE, Limits
 from cellcolor.trajectory_checker.validity import judge_validity
 

@@ -13,10 +13,9 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.memory import chunks
-from cellcolor.trajectory_checker.dense import Dense, joint_steps
+from cellcolor.trajectory_checker.dense import Dense, across_of, joint_steps, turns_off
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
 from cellcolor.trajectory_checker.tolerances import BRANCH
-from cellcolor.trajectory_checker.tool_turn import across_of, turns_off
 
 _SAME = 1e-6  # rad, m; solutions so near to each other are one
 

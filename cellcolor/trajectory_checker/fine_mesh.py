@@ -199,21 +199,19 @@ def refined(surface: Surface, longest: float, deadline: Deadline) -> FineMesh:
     Raises:
         TooLarge: there would be millions of small triangles.
     """
-    sides = np.diff(surface.vertices[surface.faces[:, [0, 1, 2, 0]]], axis=1)
-    rounds = np.log2(max(1.0, float(np.linalg.norm(sides, axis=2).max()) / longest))
     # Normals are interpolated like points. Edges are shortened to half and half again, so that what
-    # would not fit into memory is seen early.
+    # would not fit into memory is seen early: each side that is halved makes one triangle more.
     rows, faces = np.hstack([surface.vertices, surface.normals]), surface.faces
-    face = np.arange(len(faces))
-    for halvings in range(int(rounds), -1, -1):
+    face, limit = np.arange(len(faces)), np.inf
+    while limit > longest:
         deadline.check()
-        rows, faces, part = trimesh.remesh.subdivide_to_size(
-            rows, faces, longest * 2.0**halvings, return_index=True
-        )
-        face = face[part]
-        if len(faces) > _MOST:
+        sides = np.linalg.norm(np.diff(rows[faces[:, [0, 1, 2, 0]], :3], axis=1), axis=2)
+        limit = max(longest, float(sides.max()) / 2)
+        if len(faces) + int((sides > limit).sum()) > _MOST:
             message = f"more than {_MOST} triangles with edges of {1000 * longest:.3g} mm"
             raise TooLarge(f"the surface is too large to be judged at this spacing: {message}")
+        rows, faces, part = trimesh.remesh.subdivide_to_size(rows, faces, limit, return_index=True)
+        face = face[part]
     mesh = trimesh.Trimesh(rows[:, :3], faces, process=False, validate=False)
     return FineMesh(surface, mesh, _unit(rows[:, 3:]), face)
 

@@ -10,11 +10,10 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.setup import Turn
 from cellcolor.trajectory_checker.contact import Contact
-from cellcolor.trajectory_checker.dense import Dense, angles
+from cellcolor.trajectory_checker.dense import Dense, angles, turns_off
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
 from cellcolor.trajectory_checker.fine_mesh import FineMesh
 from cellcolor.trajectory_checker.tolerances import LEAVING, OFF_SURFACE, TILT, TURN
-from cellcolor.trajectory_checker.tool_turn import turns_off
 
 _PARTS = 16  # a step that seems to cross a crack is tested in so many parts: it may pass its end
 

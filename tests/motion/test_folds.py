@@ -26,6 +26,7 @@ def refusals(normals: np.ndarray, direction: bool) -> ArmRefusals:
     count = len(small.corners)
     nothing: Any = None
     states = CornerStates(
+        small,
         np.zeros((count, 3, 1)), np.zeros((count, 3), dtype=np.uint8), nothing,
         np.zeros(count, dtype=bool),
     )  # fmt: skip
@@ -41,7 +42,7 @@ def refusals(normals: np.ndarray, direction: bool) -> ArmRefusals:
         arm=SimpleNamespace(follow=lambda points, *_: np.zeros((len(points), 1))),
         robot=SimpleNamespace(task=SimpleNamespace(direction=direction)),
     )
-    return ArmRefusals(prepared, 0, small, states, 0, np.ones(4, dtype=bool), 0.001, NEVER)
+    return ArmRefusals(prepared, 0, states, 0, np.ones(4, dtype=bool), 0.001, NEVER)
 
 
 def leaning(degrees: list[float]) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
@@ -16,9 +17,9 @@ from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.following import Followed
 from cellcolor.motion.order import ordered
 from cellcolor.motion.samples import Samples, sampled, with_normals_of
-from cellcolor.motion.sampling_planner import sampled_way
 from cellcolor.motion.strokes import Stroke, cut_where_full, trimmed
 from cellcolor.motion.turns import Visit, chosen_turns
+from cellcolor.motion.ways import quickest_way
 
 ANGLES = st.floats(-3.0, 3.0)
 UP = np.array([0.0, 0.0, 1.0])
@@ -123,30 +124,40 @@ def wall(configurations: np.ndarray) -> np.ndarray:
     return np.asarray(~blocked)
 
 
-def test_the_sampling_planner_finds_a_way_round_and_the_same_for_a_seed() -> None:
-    ends = np.array([0.0, 0.0, 0.0]), np.array([2.0, 0.0, 0.0])
-    limits = turning([-3.0] * 3, [3.0] * 3)
-    ways = [sampled_way(*ends, limits, wall, 0.01, 600, seed, NEVER) for seed in (5, 5, 6)]
-    first, again, other = ways
-    assert first is not None
-    assert again is not None
-    assert other is not None
-    assert np.array_equal(first, again)
-    assert not np.array_equal(first, other)
-    assert np.array_equal(first[[0, -1]], np.array(ends))
-    for start, end in pairwise(first):
-        # What is not free lies between two tested configurations, 0.01 rad apart.
-        way = start + np.linspace(0, 1, 1000)[:, None] * (end - start)
-        assert (~wall(way)).mean() * np.abs(end - start).max() < 0.011
+def way_over(
+    free: Callable[[np.ndarray], np.ndarray], seed: int, joints: int
+) -> list[np.ndarray] | None:
+    """Corners of a way from 0 to 2 of the first joint over configurations that are drawn."""
+    ends = 2.0 * np.eye(joints)[:1] * np.array([[0.0], [1.0]])
+    drawn = np.random.default_rng(seed).uniform(-3, 3, (60, joints))
+    nodes = np.concatenate([ends, drawn[free(drawn)]])
+    seconds = 0.2 + np.abs(nodes[:, None] - nodes).max(axis=2)
+    asked = list[tuple[int, int]]()
+
+    def is_free(one: int, other: int) -> bool:
+        asked.append((one, other))
+        way = nodes[one] + np.linspace(0, 1, 1000)[:, None] * (nodes[other] - nodes[one])
+        return bool(free(way).all())
+
+    way = quickest_way(seconds, is_free, NEVER)
+    assert len(asked) == len(set(asked))
+    return None if way is None else [nodes[node] for node in way]
 
 
-def test_the_sampling_planner_says_if_it_finds_none() -> None:
+@pytest.mark.parametrize("seed", range(3))
+def test_a_way_round_is_found_and_all_its_moves_are_free(seed: int) -> None:
+    corners = way_over(wall, seed, 3)
+    assert corners is not None and len(corners) > 2
+    assert corners[0].tolist() == [0, 0, 0] and corners[-1].tolist() == [2, 0, 0]
+    for start, end in pairwise(corners):
+        assert wall(start + np.linspace(0, 1, 777)[:, None] * (end - start)).all()
+
+
+def test_no_way_is_found_through_what_is_shut() -> None:
     def shut(configurations: np.ndarray) -> np.ndarray:
         return np.asarray(np.abs(configurations[:, 0] - 1) > 0.2)
 
-    start, end = np.array([0.0, 0.0]), np.array([2.0, 0.0])
-    limits = turning([-3.0] * 2, [3.0] * 2)
-    assert sampled_way(start, end, limits, shut, 0.04, 600, 0, NEVER) is None
+    assert way_over(shut, 0, 2) is None
 
 
 def test_turns_are_chosen_so_that_straight_moves_are_free() -> None:

@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from joint_drives import driven, faults_of
 from scipy.optimize import linprog
 
 from cellcolor.arrays import Array
-from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import FaultKind
 from cellcolor.motion.timing import Speeds, _swept, timed
-from cellcolor.trajectory_checker.fault_list import FaultList
-from cellcolor.trajectory_checker.joint_motion import JointLimits, judge_joints
 from examples import examples
 
 
@@ -115,24 +114,17 @@ def test_no_way_within_the_limits_is_faster(seed: int, steps: int, joints: int) 
     assert found == pytest.approx(best.x, rel=1e-6, abs=1e-9)
 
 
-def faults_of(joints: Array, times: Array, speeds: Speeds) -> FaultList:
+def faults(joints: Array, times: Array, speeds: Speeds) -> set[FaultKind]:
     """What the judge says of joints that rest before and after."""
     joints = joints[[0, *range(len(joints)), -1]]
     times = np.concatenate([[0.0], 1.0 + times, [2.0 + times[-1]]])
-    points, away = np.zeros((len(times), 3)), np.zeros(len(times), dtype=bool)
-    names, normals = ("one", "other"), np.tile([0.0, 0.0, 1.0], (len(times), 1))
-    drive = Trajectory("way", names, times, joints, points, normals, away, np.full(len(times), -1))
-    fastest, most = speeds.velocities, speeds.accelerations
-    limits = JointLimits(None, None, fastest, most, None, np.inf, away[:2])
-    faults = FaultList(drive, timed=True)
-    judge_joints(drive, points, limits, True, faults)
-    return faults
+    return faults_of(driven(times, joints), speeds.velocities, speeds.accelerations)
 
 
 def test_a_long_way_without_samples_has_no_fault_of_its_own() -> None:
     """Such as a move that is not planned; the judge lets an arm bow a little off a line."""
     ends, speeds = np.array([[0.0, 0.0], [4.0, -1.0]]), Speeds(np.full(2, 3.0), np.full(2, 8.0))
-    assert not faults_of(ends, timed(ends, speeds), speeds).counts
+    assert not faults(ends, timed(ends, speeds), speeds)
 
 
 @examples(30)
@@ -144,4 +136,4 @@ def test_the_judge_finds_no_fault_in_times_of_steps_of_any_length(
     rng = np.random.default_rng(seed)
     steps = rng.uniform(-size, size, (count, 2)) * rng.choice([0.1, 1.0], (count, 1))
     joints, speeds = np.cumsum(steps, axis=0), Speeds(np.full(2, 2.0), np.array([5.0, 3.0]))
-    assert not faults_of(joints, timed(joints, speeds), speeds).counts
+    assert not faults(joints, timed(joints, speeds), speeds)

@@ -16,7 +16,7 @@ from cellcolor.frontend.build import BuildResult, build_surface
 from cellcolor.motion.limits import motion_of, speeds_of
 from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.transfers import _ATTEMPTS, Transfers, _directions
-from cellcolor.motion.ways import FEW_ROUNDS, MANY_ROUNDS, Transfer
+from cellcolor.motion.ways import FEW, MANY, Transfer
 from examples import examples
 
 
@@ -54,7 +54,7 @@ def in_the_middle(built: BuildResult) -> tuple[Transfers, Stroke]:
 def planned_with(
     built: BuildResult, monkeypatch: pytest.MonkeyPatch, without_way: int
 ) -> tuple[list[Transfer], list[tuple[bytes, int]]]:
-    """The moves, and those that were asked for between the strokes, with the rounds.
+    """The moves, and those that were asked for between the strokes, with the drawn.
 
     The first ``without_way`` different ones of them have no way.
     """
@@ -67,11 +67,11 @@ def planned_with(
     asked: list[tuple[bytes, int]] = []
     shut: set[bytes] = set()
 
-    def between(start: Array, end: Array, rounds: int) -> Transfer:
+    def between(start: Array, end: Array, drawn: int) -> Transfer:
         gap = None
         if not np.array_equal(start, home) and not np.array_equal(end, home):
             key = start.round(6).tobytes() + end.round(6).tobytes()
-            asked.append((key, rounds))
+            asked.append((key, drawn))
             if len(shut) < without_way:
                 shut.add(key)
             gap = 0 if key in shut else None
@@ -88,7 +88,7 @@ def test_the_quickest_turns_are_taken_where_they_have_a_way(
 ) -> None:
     transfers, asked = planned_with(square, monkeypatch, 0)
     assert [one.gap for one in transfers] == [None] * 3
-    assert [rounds for _, rounds in asked] == [FEW_ROUNDS]
+    assert [drawn for _, drawn in asked] == [FEW]
 
 
 def test_other_turns_are_tried_where_there_is_no_way(
@@ -96,7 +96,7 @@ def test_other_turns_are_tried_where_there_is_no_way(
 ) -> None:
     transfers, asked = planned_with(square, monkeypatch, 2)
     assert [one.gap for one in transfers] == [None] * 3
-    assert [rounds for _, rounds in asked] == [FEW_ROUNDS] * 3
+    assert [drawn for _, drawn in asked] == [FEW] * 3
     assert len(dict(asked)) == 3
 
 
@@ -105,7 +105,7 @@ def test_the_search_is_long_only_where_no_turns_have_a_way(
 ) -> None:
     transfers, asked = planned_with(square, monkeypatch, 100)
     assert [one.gap is None for one in transfers] == [True, False, True]
-    assert [rounds for _, rounds in asked] == [FEW_ROUNDS] * _ATTEMPTS + [MANY_ROUNDS]
+    assert [drawn for _, drawn in asked] == [FEW] * _ATTEMPTS + [MANY]
     # Turning both ends of a move by the same full circles does not make it another one.
     ways = [np.diff(np.frombuffer(key).reshape(2, -1), axis=0)[0] for key, _ in asked[:_ATTEMPTS]]
     assert len({way.round(4).tobytes() for way in ways}) == _ATTEMPTS

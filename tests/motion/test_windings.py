@@ -161,7 +161,7 @@ def test_the_few_samples_beyond_the_limits_are_kept_off() -> None:
     turned = np.deg2rad(np.append(np.linspace(-199.0, 199.0, 299), 201.0))[:, None]
     stroke = Stroke(0, 0, points, points, turned)
     samples = SimpleNamespace(points=points, faces=np.arange(300))
-    courses = SimpleNamespace(courses=[SimpleNamespace(samples=samples)])
+    courses = [SimpleNamespace(samples=samples)]
     refused: list[tuple[int, list[float], str]] = []
     refusals = SimpleNamespace(add=lambda face, at, why: refused.append((face, at.tolist(), why)))
     arguments: Any = (courses, [stroke], turning_by(200), refusals)
@@ -179,12 +179,12 @@ def test_points_where_the_first_joint_is_beyond_its_limits_are_refused(ring: Pla
     branch = built.color_branch[color]
     small = SmallTriangles.of(ring.painted.surface.mesh, ring.normals, ring.painted.segment_of)
     states = corner_states(prepared, small, np.array([branch]))
-    parts = parts_of(small, states, 0, np.zeros(len(small.whole.edges), dtype=bool))
+    parts = parts_of(states, 0, np.zeros(len(small.whole.edges), dtype=bool))
     rng = np.random.default_rng(3)
     turns = np.zeros(parts.center.shape, dtype=np.int64)
     turns[:, 0] = rng.integers(-1, 2, len(turns))
     own = ring.painted.segment_of == 0
-    refusals = ArmRefusals(prepared, branch, small, states, 0, own, 0.004, NEVER)
+    refusals = ArmRefusals(prepared, branch, states, 0, own, 0.004, NEVER)
     asked = rng.choice(np.flatnonzero(parts.part_of >= 0), 400)
     shares = rng.dirichlet([2.0, 2.0, 2.0], len(asked))
     points, normals = (

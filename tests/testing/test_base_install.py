@@ -73,7 +73,7 @@ def test_there_are_no_extras(base: Environment) -> None:
     found = base.python(
         "from importlib.util import find_spec as find\n"
         "import cellcolor\n"
-        "extras = 'pinocchio fcl trimesh scipy ompl matplotlib plotly clingo pychoco'\n"
+        "extras = 'pinocchio fcl trimesh scipy matplotlib plotly clingo pychoco'\n"
         "extras += ' hypothesis'\n"
         "print(cellcolor.__file__, [name for name in extras.split() if find(name)])\n"
     )

@@ -1,4 +1,4 @@
-"""What a walk leaves uncovered is reached by bends where these do no harm, by spurs elsewhere."""
+"""What a walk leaves uncovered is reached by spurs."""
 
 from __future__ import annotations
 
@@ -57,26 +57,12 @@ def uncovered(walk: list[int]) -> np.ndarray:
     return np.asarray(far > 0.76 * SPACING)
 
 
-def test_a_strip_that_is_a_little_too_wide_is_reached_by_bends() -> None:
-    """Two rows are 17 steps apart, so the line between them is 0.85 spacings from both."""
-    walk = back_and_forth([5, 15, 25, 35, 52, 62, 72, 82, 95])
-    assert uncovered(walk).sum() > 80
-    reached = with_spurs(Laid(SHEET, walk), SPACING, NEVER).walk
-    assert reversals(reached) == 0
-    assert uncovered(reached).sum() < 20
-    lengths = [
-        np.linalg.norm(np.diff(SHEET.points[row], axis=0), axis=1).sum() for row in (walk, reached)
-    ]
-    assert lengths[1] < 1.05 * lengths[0]
-
-
-def test_where_a_bend_would_uncover_the_other_side_there_is_a_spur() -> None:
-    """Rows are 14 steps apart, and 22 once. What reaches the middle leaves its own row's side."""
+def test_a_strip_that_is_too_wide_is_reached_by_spurs_from_the_walk() -> None:
+    """Rows are 14 steps apart, and 22 once. The walk stays, with ways there and back."""
     walk = back_and_forth([5, 19, 33, 55, 69, 83, 94])
     reached = with_spurs(Laid(SHEET, walk), SPACING, NEVER).walk
     assert reversals(reached) > 0
-    inner = {vertex for vertex in walk if 25 < vertex % SIZE < SIZE - 25}  # at turns there is room
-    assert inner <= set(reached)
+    assert set(walk) <= set(reached)
     assert uncovered(reached).sum() < 0.1 * uncovered(walk).sum()
 
 

@@ -1,4 +1,4 @@
-"""What accelerations say of a line of samples: an arm that cruises neither stops nor starts."""
+"""Accelerations and jerks: an arm that cruises neither stops nor starts, a spline has its jerk."""
 
 from __future__ import annotations
 
@@ -7,34 +7,16 @@ import pytest
 from honest_drives import resampled
 from hypothesis import given
 from hypothesis import strategies as st
+from joint_drives import driven, faults_of
+from scipy.interpolate import BSpline
 
 from cellcolor.arrays import Array
-from cellcolor.data.trajectory import Trajectory
-from cellcolor.data.trajectory_verdict import FaultKind
-from cellcolor.trajectory_checker.fault_list import FaultList
-from cellcolor.trajectory_checker.joint_motion import JointLimits, judge_joints
+from cellcolor.trajectory_checker.tolerances import ANGLE_ROUNDING
 from examples import examples
 
 MOST = 8.0  # rad/s²
 APART = 0.29  # s; a motion with 8 rad/s² is at most a t²/8 = 4.8 degrees off the line between
-
-
-def driven(times: Array, joint: Array) -> Trajectory:
-    """A drive of one joint on the way."""
-    count = len(times)
-    normals = np.tile([0.0, 0.0, 1.0], (count, 1))
-    away, none = np.zeros(count, dtype=bool), np.full(count, -1)
-    joints, points = joint[:, None], np.zeros((count, 3))
-    return Trajectory("one", ("joint",), times, joints, points, normals, away, none)
-
-
-def faults(trajectory: Trajectory) -> set[FaultKind]:
-    limits = JointLimits(
-        None, None, np.array([np.inf]), np.array([MOST]), None, np.inf, np.zeros(1, bool)
-    )
-    found = FaultList(trajectory, timed=True)
-    judge_joints(trajectory, np.asarray(trajectory.points), limits, True, found)
-    return set(found.counts)
+KNOTS = 0.2  # s, between those of splines
 
 
 def smooth(random: np.random.Generator) -> tuple[Array, Array]:
@@ -74,8 +56,8 @@ def test_a_motion_that_keeps_its_limits_has_no_fault(seed: int, decimals: int) -
     if times[-1] - times[-2] > APART:
         times = np.insert(times, -1, (times[-1] + times[-2]) / 2)
     drive = driven(times, np.round(at(times, changes, sizes), decimals))
-    assert "acceleration" not in faults(drive)
-    assert "acceleration" not in faults(resampled(drive, 0.01))
+    assert "acceleration" not in faults_of(drive, acceleration=MOST)
+    assert "acceleration" not in faults_of(resampled(drive, 0.01), acceleration=MOST)
 
 
 @pytest.mark.parametrize("step", [0.001, 0.05])
@@ -84,11 +66,41 @@ def test_an_arm_that_cruises_neither_stops_nor_starts(step: float) -> None:
     changes = np.cumsum([0.0, 1.9 / MOST, 1.5, 1.9 / MOST])
     times = np.append(np.arange(0.0, changes[-1] - step / 2, step), changes[-1])
     whole = driven(times, at(times, changes, np.array([MOST, 0.0, -MOST])))
-    assert faults(whole) == set()
+    assert faults_of(whole, acceleration=MOST) == set()
     joint, row = np.asarray(whole.joints)[:, 0], int(np.searchsorted(times, 1.0))
     later = np.insert(times + 0.1 * (times > times[row]), row + 1, times[row] + 0.1)
     doubled = driven(later, np.insert(joint, row + 1, joint[row]))
     begun, ended = driven(times[row:], joint[row:]), driven(times[:row], joint[:row])
     for forged in (doubled, begun, ended):
-        assert faults(forged) == {"acceleration"}
-        assert faults(resampled(forged, 0.005)) == {"acceleration"}
+        assert faults_of(forged, acceleration=MOST) == {"acceleration"}
+        assert faults_of(resampled(forged, 0.005), acceleration=MOST) == {"acceleration"}
+
+
+@examples(60)
+@given(seed=st.integers(0, 100_000), decimals=st.sampled_from([6, 15]))
+def test_a_drive_is_at_fault_just_where_its_jerk_is_above_the_limit(
+    seed: int, decimals: int
+) -> None:
+    """A cubic spline from rest to rest; its jerks are third differences of its coefficients."""
+    rng = np.random.default_rng(seed)
+    inner = np.cumsum(rng.uniform(-1.0, 1.0, 6) + 0.1)
+    # Equal coefficients at both ends: no velocity and no acceleration there.
+    coefficients = np.concatenate([np.zeros(4), inner, inner[[-1] * 4]])
+    spline = BSpline(KNOTS * np.arange(len(coefficients) + 4), coefficients, 3)
+    most = float(np.abs(np.diff(coefficients, 3)).max()) / KNOTS**3
+    begin, end = 3 * KNOTS, len(coefficients) * KNOTS
+    times = begin + np.cumsum(rng.uniform(0.001, rng.choice([0.003, 0.02]), 20_000))
+    times = np.concatenate([[begin], times[times < end - 0.001], [end]])
+    drive = driven(times - begin, np.round(spline(times), decimals))
+    assert "jerk" not in faults_of(drive, jerk=most)
+    # Angles are taken for rounded, which over 8 ms is a jerk of 8 roundings / (8 ms)³.
+    assert "jerk" in faults_of(drive, jerk=0.95 * most - 8 * ANGLE_ROUNDING / 0.008**3)
+
+
+def test_accelerations_that_begin_at_once_are_at_fault() -> None:
+    """0 to 8 rad/s² at a sample: third differences are half of 8 (8 ms)² before it and after it."""
+    times = np.arange(0.0, 1.0, 0.008)
+    speed = 8 * np.minimum(np.minimum(times, 0.2), 1.0 - 0.008 - times)
+    place = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2 * 0.008)])
+    assert "jerk" in faults_of(driven(times, place), jerk=450.0)
+    assert "jerk" not in faults_of(driven(times, place), jerk=550.0)
