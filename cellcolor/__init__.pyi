@@ -25,9 +25,6 @@ from cellcolor.deadline import Deadline as Deadline
 from cellcolor.deadline import OutOfTime as OutOfTime
 from cellcolor.door.asking import explain as explain
 from cellcolor.door.asking import tradeoff as tradeoff
-from cellcolor.door.comparing import ComparedArm as ComparedArm
-from cellcolor.door.comparing import Comparison as Comparison
-from cellcolor.door.comparing import compare as compare
 from cellcolor.door.drawing import Drawing as Drawing
 from cellcolor.door.drawing import show as show
 from cellcolor.door.extras import show_versions as show_versions

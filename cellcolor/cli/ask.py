@@ -1,4 +1,4 @@
-"""What a lift-off costs: ``tradeoff``, ``explain``, ``place``, ``compare`` and ``setups``."""
+"""What a lift-off costs: ``tradeoff``, ``explain``, ``place`` and ``setups``."""
 
 from __future__ import annotations
 
@@ -23,7 +23,6 @@ from cellcolor.cli.options import (
     SEED,
     TIME_LIMIT,
     TOLERANCE,
-    UNIT,
     WORKERS,
     Price,
     cellcolor,
@@ -263,48 +262,6 @@ def place(
         _print(scene, _documents(found), found, as_json, **moved)
         draw(lambda file: save_map(found, file))
     proved = bool(found.best) and all(row.proved_for_surface for row in found.best)
-    return Exit.done_if(found.complete and proved)
-
-
-@cellcolor.command()
-@click.argument("part", metavar="PART.(stl|obj|ply)", type=PATH)
-@click.option(
-    "--arm",
-    "arms",
-    metavar="NAME|ARM.urdf",
-    multiple=True,
-    required=True,
-    help="A shipped arm, such as ur5e, or a URDF; once for each arm.",
-)
-@ranges
-@cover_option(
-    "The share of the surface that each arm has to cover, 0 to 1.  [default: as much as the "
-    "arm that covers most where the part is put at first]"
-)
-@_POINTS
-@_VERTICES
-@UNIT
-@output_option("OUT.(png|svg)", "A picture of what each arm covers.")
-@json_option("Print a JSON object for each arm.")
-@click.option("--jobs", default=1, **JOBS)
-@SEED
-@TIME_LIMIT
-def compare(
-    part: Path, arms: tuple[str, ...], output: Path | None, as_json: bool, **search: Any
-) -> Exit:
-    """Print for each arm the best placement of a part, its lift-offs, its area and its front.
-
-    Each arm gets the setup that ``cellcolor new`` begins with.
-    """
-    from cellcolor.door.comparing import compare as comparison_of
-
-    late = "the time limit came before anything was known of an arm"
-    with drawn_to(output, [part], as_json) as draw:
-        with at_work(part, "comparing", late) as tell:
-            found = comparison_of(part, arms, progress=tell, **search)
-        _print(part, _documents(found), found, as_json)
-        draw(found.save)
-    proved = all(row.best is None or row.best.proved_for_surface for row in found)
     return Exit.done_if(found.complete and proved)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import matplotlib as mpl
 import numpy as np
@@ -79,35 +79,6 @@ def _draw(axes: Axes, plot: Plot) -> None:
             axis.set_major_locator(LogLocator(subs=subs, numticks=12))
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_formatter(NullFormatter())
-
-
-def render_arms(part: str, shares: Mapping[str, Sequence[float]], kind: str) -> bytes:
-    """What each arm covers with each number of lift-offs: bars, a color for each arm.
-
-    Args:
-        part: its name.
-        shares: of each arm, 0 to 1, at 0, 1, 2, … lift-offs; an arm may have none.
-        kind: ``png`` or ``svg``.
-    """
-    most = max(map(len, shares.values()), default=0)
-    with mpl.rc_context(_STYLE):
-        figure, (axes,) = _figure(1)
-        width = 0.8 / max(len(shares), 1)
-        for number, (arm, own) in enumerate(shares.items()):
-            # With more lift-offs an arm covers as much as with the last number.
-            heights = [100 * share for share in [*own, *list(own[-1:]) * (most - len(own))]]
-            at = np.arange(len(heights)) + (number + 0.5) * width - 0.4
-            color = LINES[number % len(LINES)] if own else GREY
-            label = arm if own else f"{arm}: reaches nothing"
-            bars = axes.bar(at, heights, 0.9 * width, color=color, label=label)
-            axes.bar_label(bars, fmt="%.1f", fontsize=7)
-        axes.set_title(f"{part}: what each arm covers at its best placement", loc="left")
-        axes.set_xlabel(_LIFT_OFFS)
-        axes.set_ylabel(_SHARE)
-        axes.set_ylim(0, 105)
-        axes.set_xticks(range(most))
-        figure.legend(loc="outside right upper", frameon=False, fontsize=8)
-        return _saved(figure, kind)
 
 
 def render_front(front: Front, kind: str) -> bytes:
