@@ -4,7 +4,7 @@ Cases are numbers from 0 on: first the shipped scenes, then scenes that are draw
 fixed seed, of shipped arms and of the URDFs in a folder (those of ros-industrial, expanded from
 xacro, for example), and of the parts below and the OBJ meshes in a folder. A line of JSON is
 printed for each, and a table by cause at the end.
-docs/measured/motions.md has what came out.
+docs/measured.md has what came out.
 """
 
 from __future__ import annotations

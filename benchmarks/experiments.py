@@ -1,21 +1,13 @@
-"""The six scenes at a resolution, raw and with the sliver policy, as shipped or displaced.
+"""The paper's six scenes at a resolution, raw and with the sliver policy, as shipped or displaced.
 
     python benchmarks/experiments.py VERTICES [SEEDS] [--raw-only | --policy-only] [SCENE ...]
     python benchmarks/experiments.py VERTICES --constraints [SCENE ...]
-    python benchmarks/experiments.py VERTICES SEEDS --write FOLDER
 
-Without SEEDS: one line a scene and policy. With SEEDS: the object moved by up to 5 mm and
-2 degrees an axis, once for each seed from 1 on, and how often each number of lift-offs came out.
-"a-b" stands for a minimum that the time limit of 10 seconds left between a and b.
-
-With --constraints: how many candidates (a vertex in a branch that has a solution there) fail each
-test of validity, and in brackets how many fail no other.
-
-With --write, labelled surfaces of other scenes are written instead, for ``cellcolor bench run``:
-no sliver policy, the object moved by up to 40 mm and 12 degrees an axis, far beyond what a fixture
-would allow.
-
-The figures of docs/experiments.md were made with this.
+Measures the minimum, in lift-offs; "a-b" if the limit of 10 seconds left it between a and b. With
+SEEDS the object is moved by up to 5 mm and 2 degrees an axis, once for each seed from 1 on, and
+the line says how often each number came out. With ``--constraints``: how many candidates (a vertex
+in a branch that has a solution there) fail each test of validity, and in brackets how many fail no
+other. docs/paper.md has the tables.
 """
 
 from __future__ import annotations
@@ -38,18 +30,15 @@ from cellcolor.solvers.interface import Options
 TOP = Path(__file__).parents[1]
 SCENES = TOP / "instances" / "scenes"
 NAMES = ("hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square")
-NEARBY, ELSEWHERE = (0.005, np.deg2rad(2.0)), (0.04, np.deg2rad(12.0))
-"""The most that an object is moved: m and rad an axis."""
+NEARBY = 0.005, np.deg2rad(2.0)  # the most that an object is moved: m and rad an axis
 
 
-def build(
-    name: str, vertices: int, seed: int, raw: bool, most: tuple[float, float] = NEARBY
-) -> BuildResult:
+def build(name: str, vertices: int, seed: int, raw: bool) -> BuildResult:
     """A variant of a shipped scene; seed 0 leaves it where it is."""
     scene = Scene.read(SCENES / f"{name}.toml").varied(object={"target_vertices": vertices})
     if seed:
         random = np.random.default_rng(seed)
-        shift, turn = (random.uniform(-limit, limit, 3) for limit in most)
+        shift, turn = (random.uniform(-limit, limit, 3) for limit in NEARBY)
         place = scene.placement
         scene = scene.moved(position_m=place.position_m + shift, rpy_rad=place.rpy_rad + turn)
     if raw:
@@ -94,22 +83,8 @@ def print_constraints(names: Sequence[str], vertices: int) -> None:
         print(f"| {row} | {' | '.join(column[row] for column in columns)} |")
 
 
-def write(folder: Path, vertices: int, seeds: int) -> None:
-    """Write a labelled surface for each scene and seed."""
-    for name in NAMES:
-        (folder / name).mkdir(parents=True, exist_ok=True)
-        for seed in range(1, seeds + 1):
-            surface = build(name, vertices, seed, True, ELSEWHERE).surface
-            file = folder / name / f"{name}_{seed}.surface.json"
-            file.write_text(surface.to_json(), encoding="utf-8")
-            print(file, flush=True)
-
-
 def main(arguments: list[str]) -> None:
-    """Print the figures, or write surfaces."""
-    if "--write" in arguments:
-        write(Path(arguments[-1]), *map(int, arguments[:2]))
-        return
+    """Print the figures."""
     options = {argument for argument in arguments if argument.startswith("--")}
     numbers = [int(argument) for argument in arguments if argument.isdigit()]
     names = [argument for argument in arguments if argument in NAMES] or NAMES

@@ -1,14 +1,11 @@
 """Paint many solutions, and look at each painting: ``python benchmarks/painting.py [TABLE …]``.
 
-- ``families``: every random family that makes surfaces, ``--count`` seeds of each. Divisions are
-  drawn at random, which divides far more cells than any solver does; with ``--solve SECONDS`` they
-  are solved instead, in the search space ``surface``.
-- ``library``: every surface of the instance library, solved in both search spaces.
-- ``scenes``: the six scenes without sliver policy, at 500, 2,000 and 8,000 vertices, likewise.
-
-A painting is counted if it is valid, every segment is one connected set of vertices, and it has as
-many segments as its solution (fewer only where parts are named that touch). All else is printed
-with its seed. Added vertices are a share of those that the surface had; seconds are of CPU.
+Measures, for each random family that makes surfaces (table ``families``) with divisions drawn at
+random, which divide far more cells than any solver does, and for every surface of the library as
+it is solved in both search spaces (``library``): divided cells, vertices that painting added as a
+share of those that the surface had, and seconds of processor time, for painting and for moving the
+borders. Each painting has to be valid, with every segment one connected set of vertices and as many
+segments as the solution; all else is printed with its seed. docs/measured.md has the tables.
 """
 
 from __future__ import annotations
@@ -26,7 +23,7 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of
-from cellcolor.lab.families.registry import LARGE, MEDIUM, SMALL, Family
+from cellcolor.lab.families.registry import LARGE, MEDIUM
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import paint
 from cellcolor.solvers.checked import solve
@@ -37,12 +34,10 @@ sys.path.insert(0, str(ROOT / "tests" / "support"))
 
 from painted import assert_whole, random_solution  # noqa: E402
 
-SIZES = (500, 2_000, 8_000)
-SECONDS = 60.0  # to solve one file of the library, or one scene
-
-FAMILIES: dict[str, Family] = {
+LIMIT = 10.0  # s to solve a file of the library
+FAMILIES = {
     f"{size}: {name}": family
-    for size, group in (("small", SMALL), ("medium", MEDIUM), ("large", LARGE))
+    for size, group in (("medium", MEDIUM), ("large", LARGE))
     for name, family in group.items()
     if isinstance(family(0), LabelledSurface)
 }
@@ -57,7 +52,6 @@ class Row:
     shares: list[float] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
     moving: list[float] = field(default_factory=list)
-    lengths: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
 
     def paint(
@@ -81,92 +75,57 @@ class Row:
         self.shares.append((after - before) / before)
         self.seconds.append(drawn - started)
         self.moving.append(finished - drawn)
-        if moved.borders.before.length_m:
-            self.lengths.append(moved.borders.after.length_m / moved.borders.before.length_m)
 
     def __str__(self) -> str:
-        done, failed = len(self.shares), len(self.failures)
+        done = len(self.shares)
         added = _spread(self.shares, "{:.0%}")
-        lengths = f"{median(self.lengths):.0%}" if self.lengths else ""
         times = f"{_spread(self.seconds, '{:.2f}')} | {_spread(self.moving, '{:.2f}')}"
-        counts = f"{done + failed} | {self.divided} | {done}"
-        return f"| {self.kind} | {counts} | {added} | {lengths} | {times} |"
+        counts = f"{done} of {done + len(self.failures)} | {self.divided:,}"
+        return f"| {self.kind} | {counts} | {added} | {times} |"
 
 
 def _spread(values: list[float], kind: str) -> str:
-    """Median and greatest, as two cells of a table."""
-    return f"{kind.format(median(values))} | {kind.format(max(values))}" if values else " | "
+    """Median and greatest, as one cell of a table."""
+    return f"{kind.format(median(values))}, {kind.format(max(values))}" if values else ""
 
 
-def families(kinds: list[str], count: int, first: int, limit: float | None) -> Iterator[Row]:
+def families(count: int) -> Iterator[Row]:
     """One row for each family."""
-    for kind in kinds:
+    for kind, family in FAMILIES.items():
         row = Row(kind)
-        for seed in range(first, first + count):
-            surface = FAMILIES[kind](seed)
+        for seed in range(count):
+            surface = family(seed)
             assert isinstance(surface, LabelledSurface)
             decomposition = decomposition_of(surface)
             rng = random.Random(f"{kind} {seed}")
-            if limit is None:
-                found = random_solution(decomposition.instance, rng.randint(1, 3), rng)
-            else:
-                options = Options("surface", deadline=Deadline.after(limit))
-                found = solve(decomposition.instance, options)
-            if found.cells is not None:
-                row.paint(str(seed), surface, decomposition, found)
+            found = random_solution(decomposition.instance, rng.randint(1, 3), rng)
+            row.paint(str(seed), surface, decomposition, found)
         yield row
 
 
 def library() -> Iterator[Row]:
     """One row for each search space."""
-    files = sorted((ROOT / "instances").rglob("*.surface.json"))
-    yield from _both_spaces("library", [(f.name, LabelledSurface.read(f)) for f in files])
-
-
-def scenes() -> Iterator[Row]:
-    """One row for each size and search space."""
-    from cellcolor.frontend import Scene, build_surface
-
-    for size in SIZES:
-        surfaces = []
-        for file in sorted((ROOT / "instances" / "scenes").glob("*.toml")):
-            scene = Scene.read(file)
-            setup = scene.setup.varied(slivers=None)
-            scene = scene.varied(setup=setup, object={"target_vertices": size})
-            surfaces.append((file.stem, build_surface(scene).surface))
-        yield from _both_spaces(f"scenes, {size:,} vertices", surfaces)
-
-
-def _both_spaces(kind: str, surfaces: list[tuple[str, LabelledSurface]]) -> Iterator[Row]:
     for space in ("paper", "surface"):
-        row = Row(f"{kind}, `{space}`")
-        for name, surface in surfaces:
+        row = Row(f"library, `{space}`")
+        for file in sorted((ROOT / "instances").rglob("*.surface.json")):
+            surface = LabelledSurface.read(file)
             decomposition = decomposition_of(surface)
-            options = Options(space, deadline=Deadline.after(SECONDS))
-            row.paint(name, surface, decomposition, solve(decomposition.instance, options))
+            options = Options(space, deadline=Deadline.after(LIMIT))
+            row.paint(file.name, surface, decomposition, solve(decomposition.instance, options))
         yield row
 
 
 def main() -> int:
     """Print the tables, then what failed; the exit code says whether anything did."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    names = ("families", "library", "scenes")
-    parser.add_argument("tables", nargs="*", choices=[*names, []], metavar="TABLE")
-    parser.add_argument("--kinds", nargs="+", choices=list(FAMILIES), default=list(FAMILIES))
-    parser.add_argument("--count", type=int, default=200, help="seeds of each family")
-    parser.add_argument("--seed", type=int, default=0, help="the first one")
-    parser.add_argument("--solve", type=float, metavar="SECONDS", help="solve the families' draws")
-    arguments = parser.parse_args()
+    parser.add_argument("tables", nargs="*", metavar="TABLE", default=["families", "library"])
+    parser.add_argument("--count", type=int, default=20, help="seeds of each family")
+    asked = parser.parse_args()
     failures: list[str] = []
-    columns = "added | worst | length | drawn s | worst | moved s | worst"
-    print(f"| kind | draws | divided cells | painted | {columns} |")
-    print(f"|---|{'--:|' * 10}")
-    for table in arguments.tables or names:
-        if table == "families":
-            rows = families(arguments.kinds, arguments.count, arguments.seed, arguments.solve)
-        else:
-            rows = library() if table == "library" else scenes()
-        for row in rows:
+    print("| kind | painted | divided cells | vertices added | painting, s | moving, s |")
+    print("|---|--:|--:|--:|--:|--:|")
+    for table in asked.tables:
+        for row in families(asked.count) if table == "families" else library():
             print(row, flush=True)
             failures += row.failures
     print(*failures, sep="\n")

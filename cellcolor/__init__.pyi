@@ -1,5 +1,7 @@
 # The public names. __init__.py reads them here: one a line, with the module that it comes from.
 
+from cellcolor.configurations.labelling import Labelling as Labelling
+from cellcolor.configurations.labelling import from_configurations as from_configurations
 from cellcolor.data.bounds import Bound as Bound
 from cellcolor.data.cells_and_edges import OUTSIDE as OUTSIDE
 from cellcolor.data.cells_and_edges import Cell as Cell
@@ -71,8 +73,6 @@ from cellcolor.questions.placements import PlacedMinimum as PlacedMinimum
 from cellcolor.questions.placements import PlacementMap as PlacementMap
 from cellcolor.questions.placements import Placements as Placements
 from cellcolor.questions.places import WorldBox as WorldBox
-from cellcolor.questions.refinement import RefinedStep as RefinedStep
-from cellcolor.questions.refinement import Refinement as Refinement
 from cellcolor.questions.set_ups import SetUp as SetUp
 from cellcolor.questions.set_ups import SetUpPlan as SetUpPlan
 from cellcolor.tool_paths.cover import Covered as Covered

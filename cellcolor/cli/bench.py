@@ -25,7 +25,6 @@ from cellcolor.solvers.registry import DEFAULT, PAPERS, REFERENCE
 
 if TYPE_CHECKING:
     from cellcolor.lab.runs.row import Row
-    from cellcolor.lab.runs.timings import Timing
 
 
 def _numbers(_context: click.Context, _option: click.Parameter, value: str) -> tuple[int, ...]:
@@ -124,17 +123,12 @@ def run(**given: Any) -> Exit:
 def summary(tables: tuple[Path, ...]) -> Exit:
     """Sum tables up as Markdown; exit code 1 if two runs contradict each other."""
     from cellcolor.lab.runs.row import disagreements
-    from cellcolor.lab.runs.summary import summary_of_runs, summary_of_timings
+    from cellcolor.lab.runs.summary import summary_of_runs
 
-    rows, timings = _read(tables)
-    if rows:
-        say_lines("\n".join(summary_of_runs(rows)))
-    if rows and timings:
-        say_lines("\n## Other measurements\n")
-    if timings:
-        say_lines("\n".join(summary_of_timings(timings)))
-    if not rows and not timings:
+    rows = _read(tables)
+    if not rows:
         raise InputError(str(tables[0]), None, "has no rows")
+    say_lines("\n".join(summary_of_runs(rows)))
     return Exit.INVALID if disagreements(rows) else Exit.DONE
 
 
@@ -148,7 +142,7 @@ def plots(tables: tuple[Path, ...], output: Path) -> Exit:
 
     with extras_for("plots"):
         from cellcolor.pictures.plots import render_plot
-    rows, _ = _read(tables)
+    rows = _read(tables)
     if not rows:
         raise InputError(str(tables[0]), None, "has no runs of solvers")
     with system_errors(output, "cannot be made"):
@@ -161,17 +155,9 @@ def plots(tables: tuple[Path, ...], output: Path) -> Exit:
     return Exit.DONE
 
 
-def _read(tables: Sequence[Path]) -> tuple[list[Row], list[Timing]]:
-    """The rows of all tables, by their kinds."""
+def _read(tables: Sequence[Path]) -> list[Row]:
+    """The rows of all tables."""
     from cellcolor.lab.runs.row import Row
-    from cellcolor.lab.runs.table import header_of, read_table
-    from cellcolor.lab.runs.timings import Timing
+    from cellcolor.lab.runs.table import read_table
 
-    rows: list[Row] = []
-    timings: list[Timing] = []
-    for path in tables:
-        if header_of(path, (Row, Timing)) is Row:
-            rows += read_table(path, Row)
-        else:
-            timings += read_table(path, Timing)
-    return rows, timings
+    return [row for path in tables for row in read_table(path, Row)]

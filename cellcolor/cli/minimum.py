@@ -158,17 +158,10 @@ def _build_surface(source: Path, output: Path) -> Instance:
     help="With --all, stop after this many schemes.  [default: 1000]",
 )
 @click.option(
-    "--refine-until-stable",
-    "refine",
-    is_flag=True,
-    help="Solve a scene on finer meshes until minimum and graph stay the same twice in a row.",
-)
-@click.option(
     "--picture",
-    metavar="OUT.(html|png|svg)",
+    metavar="OUT.(png|svg)",
     type=PATH,
-    help="Best division and bounds over the seconds of the search, .png or .svg; with "
-    "--refine-until-stable the meshes side by side.",
+    help="Best division and bounds over the seconds of the search.",
 )
 @click.option("--time-limit", metavar="S", type=SECONDS, help="Seconds for each file.")
 @WORKERS
@@ -194,7 +187,6 @@ def _check_solve(
     strands: int | None,
     every: bool,
     limit: int | None,
-    refine: bool,
     picture: Path | None,
     **given: Any,
 ) -> None:
@@ -205,10 +197,6 @@ def _check_solve(
         "--limit needs --all": limit is not None and not every,
         "--all needs --search-space paper: schemes are defined only there": (
             every and search_space == "surface"
-        ),
-        "--refine-until-stable excludes --cover, --required, --left-alone, --warm-start "
-        "and --all: they are of a single mesh": (
-            refine and (every or asked & {"cover", "required", "left_alone", "warm_start"})
         ),
         "--picture is of a single file": picture is not None and len(files) > 1,
         "--warm-start takes a single file": "warm_start" in asked and len(files) > 1,

@@ -46,6 +46,7 @@ class _Positive(click.FloatRange):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> float:
+        """The number; NaN is refused."""
         number = float(super().convert(value, param, ctx))
         if not math.isfinite(number):
             self.fail(f"{value} is not a number of {self.units}.", param, ctx)
@@ -58,6 +59,7 @@ class Price(click.FloatRange):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> float:
+        """The number; NaN is refused."""
         number = float(super().convert(value, param, ctx))
         if math.isnan(number):
             self.fail(f"{value} is not in the range {self.min}<=x<={self.max}.", param, ctx)
@@ -241,7 +243,7 @@ _MOTION = {
     "approach_speed_m_per_s": "Of the tool within 10 mm of contact, m/s; as in contact without.",
     "joint_velocities_rad_per_s": "Lower limits than the URDF's, rad/s (m/s for sliding joints).",
     "joint_accelerations_rad_per_s2": "A URDF has none; rad/s² (m/s² for sliding joints).",
-    "joint_jerks_rad_per_s3": "No limit without it; rad/s³ (m/s³ for sliding joints).",
+    "joint_jerks_rad_per_s3": "Judged, not planned; rad/s³ (m/s³ for sliding joints).",
     "retract_m": "Along the normal, before a move to another stroke, m.",
     "clearance_m": "Distance from everything between strokes, m.",
     "home_rad": "Where the arm begins and ends, rad (m for sliding joints), or free.",

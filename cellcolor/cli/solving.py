@@ -21,12 +21,12 @@ from cellcolor.cli.ending import INTERRUPTS, Exit, worst
 from cellcolor.cli.inputs import read_subject
 from cellcolor.cli.progress import progress_of, scheme_progress_of
 from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solution
-from cellcolor.cli.terminal import apart_from, complain, print_json, say, unheard
+from cellcolor.cli.terminal import apart_from, complain, print_json, unheard
 from cellcolor.data.instance import Instance
 from cellcolor.data.schemes import scheme_line
 from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
-from cellcolor.door.drawing import kind_of_picture, kind_of_plot
+from cellcolor.door.drawing import kind_of_plot
 from cellcolor.door.result import Result
 from cellcolor.errors import CellcolorError, InputError, TooLarge, system_errors
 from cellcolor.files.writing import (
@@ -83,7 +83,6 @@ class Request:
     every: bool
     warm_start: Path | None
     limit: int | None
-    refine: bool
     picture: Path | None
     time_limit: float | None
     workers: int | None
@@ -116,8 +115,7 @@ def solve_files(request: Request) -> Exit:
     """Solve every file; a bad one does not stop the others."""
     targets = _targets(request)
     if request.picture is not None:
-        kind = (kind_of_picture if request.refine else kind_of_plot)(request.picture)
-        check_output(request.picture, kind, request.inputs)
+        check_output(request.picture, kind_of_plot(request.picture), request.inputs)
     _check_able(request)
     _warn_of_workers(request.workers)
     with apart_from(request.output):
@@ -160,16 +158,13 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
 
 def _told(request: Request, file: Path, result: Result) -> Exit:
     """Print one result; the exit code that it stands for."""
-    instance, solution, refinement = result.instance, result.solution, result.refinement
+    instance, solution = result.instance, result.solution
     wrong = contradictions(instance, solution)
     if request.as_json:
         fault = {"error": "; ".join(wrong)} if wrong else {}
         share = {"covered_share": result.covered_share} if request.of_a_part else {}
-        steps = {} if refinement is None else {"refinement": refinement.to_document()}
-        print_json({"file": str(file)} | solution.to_document() | share | steps | fault)
+        print_json({"file": str(file)} | solution.to_document() | share | fault)
     else:
-        for line in [] if refinement is None else str(refinement).split("\n")[:-1]:
-            say(line)
         print_solution(instance, solution)
     for problem in wrong:
         complain(f"{file}: contradiction: {problem}")
@@ -177,11 +172,7 @@ def _told(request: Request, file: Path, result: Result) -> Exit:
         complain(f"{file}: {nothing_to_cover(instance)}")
     if wrong:
         return Exit.INVALID
-    return Exit.done_if(
-        solution.status == "optimal"
-        and solution.complete is not False
-        and (refinement is None or refinement.stable)
-    )
+    return Exit.done_if(solution.status == "optimal" and solution.complete is not False)
 
 
 def _check_able(request: Request) -> None:
@@ -255,13 +246,11 @@ def _solve(file: Path, target: Path | None, request: Request, deadline: Deadline
             cover=request.cover,
             required=request.required,
             left_alone=request.left_alone,
-            refine_until_stable=request.refine,
             progress=report,
         )
     solution = result.solution
     beside = []
-    other = request.refine or request.of_a_part
-    if target is not None and not is_stream(target) and other:
+    if target is not None and not is_stream(target) and request.of_a_part:
         beside = [_solved(result, target)]
     if request.picture is not None:
         from cellcolor.door.drawing import draw_search
@@ -287,10 +276,8 @@ def _solve(file: Path, target: Path | None, request: Request, deadline: Deadline
 
 
 def _solved(result: Result, target: Path) -> Output:
-    """What was solved, beside its solution, where that is not what was given: a finer mesh, or
-    what had to be covered; its surface, or its graph."""
-    what = "covered" if result.refinement is None else "refined"
-    beside = target.with_name(f"{target.name.removesuffix(target.suffix)}.{what}.json")
+    """What had to be covered, beside its solution: its surface, or its graph."""
+    beside = target.with_name(f"{target.name.removesuffix(target.suffix)}.covered.json")
     return Output.of(beside, result.instance if result.surface is None else result.surface)
 
 

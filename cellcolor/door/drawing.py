@@ -286,22 +286,16 @@ def _checked(
 
 
 def draw_search(result: Result, path: str | PathLike[str]) -> None:
-    """Draw how a result was found: best division and bound over time, or its meshes side by side.
+    """Draw how a result was found: best division and bound over the seconds of its search.
+
+    What each kind of bound proved in the end is beside them.
 
     Args:
-        result: one with a ``refinement`` is drawn as its meshes, to .html, .png or .svg; any other
-            as two lines over the seconds of its search, beside what each kind of bound proved in
-            the end, to .png or .svg.
-        path: the file.
+        path: the file, .png or .svg.
 
     Raises:
         InputError: another suffix, or the file cannot be written.
     """
-    if result.refinement is not None:
-        from cellcolor.pictures.by_refinement import draw_refinement
-
-        Drawing(draw_refinement(result.refinement)).save(path)
-        return
 
     def render(form: str) -> bytes:
         from cellcolor.pictures.plots import render_plot

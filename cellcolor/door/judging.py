@@ -129,10 +129,11 @@ def judge_trajectory(
     with extras_for("the front end"):
         from cellcolor.trajectory_checker.check import check_trajectory
         from cellcolor.trajectory_checker.other_planners import completed
+        from cellcolor.trajectory_checker.tolerances import Limits
 
     report = progress or (lambda _: None)
-    tells = isinstance(given, Trajectory)
     timed = isinstance(given, Trajectory) or given.times is not None
+    limits = Limits(silent=isinstance(given, TrajectoryTable))
     if isinstance(given, TrajectoryTable):
         given = completed(given, built.robot, deadline)
     report("proven minimum")
@@ -142,8 +143,8 @@ def judge_trajectory(
         built,
         given,
         timed=timed,
-        tells=tells,
         minimum_lift_offs=lift_offs_of(bounds.lower) if bounds.exact else None,
+        limits=limits,
         deadline=deadline,
         progress=progress,
     )

@@ -60,11 +60,6 @@ class Wanted:
         """Whether all that is not left alone has to be covered."""
         return self.cover is None and self.uncovered_price is None
 
-    @property
-    def everything(self) -> bool:
-        """Whether nothing is left out."""
-        return self.whole and self.left_alone is None
-
 
 def rest_of(
     subject: Subject, wanted: Wanted, options: Options

@@ -98,8 +98,7 @@ def cover(
     Args:
         surface: the painted surface, or its file; or what ``cellcolor.paint`` returns.
         plan: one color for each vertex of it, or the file of that; None with a ``Painted``.
-        pattern: ``contour``, ``spiral``, ``back-and-forth`` or ``tree``, or what another package
-            registers.
+        pattern: ``contour`` or ``back-and-forth``, or what another package registers.
         spacing_m: desired distance between neighboring passes, m.
         tool_radius_m: of the tool's footprint, m.
         normals: (n, 3) outward unit normals at the vertices; those of the mesh if it is None.
@@ -130,6 +129,7 @@ def cover(
 
     from cellcolor.tool_paths.cover import check_spacing
     from cellcolor.tool_paths.cover import cover as cover_segments
+    from cellcolor.tool_paths.region import Segments
 
     report = check_plan(surface, plan)
     if not report.valid:
@@ -142,10 +142,7 @@ def cover(
     check_spacing(surface, segment_of, spacing_m)
     rows = surface.vertex_normals if normals is None else _unit_rows(normals, len(segment_of))
     return cover_segments(
-        surface,
-        segment_of,
-        colors,
-        rows,
+        Segments(surface, segment_of, colors, rows),
         pattern=pattern,
         spacing_m=spacing_m,
         tool_radius_m=tool_radius_m,

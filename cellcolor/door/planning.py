@@ -227,7 +227,6 @@ class _Run:
             planned = plan_motion(
                 painting.built,
                 painting.painted,
-                painting.normals,
                 pattern=self._pattern,
                 deadline=self._deadline,
                 progress=self._progress,

@@ -18,7 +18,6 @@ from cellcolor.files.writing import Output, write
 
 if TYPE_CHECKING:
     import cellcolor
-    from cellcolor.questions.refinement import Refinement
 
 
 class GapStep(NamedTuple):
@@ -44,14 +43,12 @@ class Result:
         subject: what was solved, opened.
         covered_share: what was solved, as a share of the area that can be covered and is not left
             alone, 0 to 1.
-        refinement: the steps to the mesh that was solved, where ``refine_until_stable`` was asked.
         gap: how best division and bound met over time, the last step at the end of the search.
     """
 
     solution: Solution
     subject: Subject = field(hash=False)
     covered_share: float = 1.0
-    refinement: Refinement | None = None
     gap: tuple[GapStep, ...] = field(default=(), compare=False)
 
     @property

@@ -106,7 +106,7 @@ def setups(
 ) -> ChosenSetUps:
     """Choose set-ups of a part that cover enough with the fewest lift-offs, with proof.
 
-    Needs the extra ``frontend``. Borders are not refined, so that all set-ups have one mesh.
+    Needs the extra ``frontend``.
 
     Args:
         scene: its file, its shipped name, or the value; as it stands it is the first candidate.

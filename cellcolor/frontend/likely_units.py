@@ -66,7 +66,7 @@ def _unit_of(scene: Scene) -> tuple[str, str]:
 
 def check_setup(setup: Setup, part: Surface, scene: Scene, reach: float) -> None:
     """Reject lengths of a setup that exceed the part, or margins beyond the arm's reach."""
-    spacings = ("probe_spacing_m", "validity_spacing_m", "border_length_m")
+    spacings = ("probe_spacing_m", "validity_spacing_m")
     lengths = {"task.contact_radius_m": setup.task.contact_radius_m}
     lengths |= {f"continuity.{name}": getattr(setup.continuity, name) for name in spacings}
     _no_larger_than_part(lengths, part, scene, reach)

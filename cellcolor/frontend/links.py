@@ -1,8 +1,4 @@
-"""Links: the mesh edges along which the arm stays in a branch, without a jump and valid.
-
-Whether a branch is continuous along a mesh edge depends on nothing but the edge's ends, so what is
-known of a coarser surface is taken over for the edges that a finer one still has.
-"""
+"""Links: the mesh edges along which the arm stays in a branch, without a jump and valid."""
 
 from __future__ import annotations
 
@@ -46,19 +42,10 @@ class Links:
         return cls(edges, linked, np.full(linked.shape, VALID, dtype=np.uint8))
 
 
-def continuous_links(
-    prepared: PreparedScene, candidates: Candidates, known: Links | None, deadline: Deadline
-) -> Links:
+def continuous_links(prepared: PreparedScene, candidates: Candidates, deadline: Deadline) -> Links:
     """The links along which a branch moves without a jump and within the joint limits."""
     edges = prepared.surface.edges()
-    linked = shared((len(edges), candidates.valid.shape[1]), np.bool_)
-    new = np.ones(len(edges), dtype=bool)
-    if known is not None:
-        here, there = _in_both(edges, known.edges)
-        linked[here], new[here] = known.linked[there], False
-    rows = np.flatnonzero(new)
-    linked[rows] = linked_along(prepared, edges[rows], candidates, deadline)
-    return Links.of(edges, linked)
+    return Links.of(edges, linked_along(prepared, edges, candidates, deadline))
 
 
 def linked_along(
@@ -93,8 +80,7 @@ def valid_links(
 
     Args:
         tracked: (points, n * branches, 3) of the bodies at the vertices, m.
-        known: the result and the candidates of a surface whose vertices are the first ones of this
-            one.
+        known: the result and the candidates of another scene on this surface, to be taken over.
         anew: (edges, branches) those of the known ones that are tested again.
     """
     surface, edges = prepared.surface, continuous.edges
@@ -105,14 +91,11 @@ def valid_links(
     near_border = at_domain_border(edges, candidates.valid)
     new = np.ones(linked.shape, dtype=bool)
     if known is not None:
-        # Which points of an edge are tested depends on the neighbors of its ends, which may be new.
+        # Which points of an edge are tested depends on what is valid at the neighbors of its ends.
         before, its_candidates = known
-        here, there = _in_both(edges, before.edges)
-        border_before = at_domain_border(before.edges, its_candidates.valid)
-        new[here] = near_border[here] != border_before[there]
-        new |= anew
-        linked[here] &= new[here] | before.linked[there]
-        reasons[here] = np.where(new[here], VALID, before.reasons[there])
+        new = anew | (near_border != at_domain_border(edges, its_candidates.valid))
+        linked &= new | before.linked
+        reasons[~new] = before.reasons[~new]
     each = 2 * bytes_of_point(len(tracked))  # of a link: at both its ends
     asked = np.flatnonzero((linked & new).any(axis=1))
 
@@ -147,15 +130,6 @@ def valid_links(
 
     _in_parts(test_part, chunks(len(all_rows), each), deadline)
     return Links(edges, linked, reasons)
-
-
-def _in_both(edges: Index, others: Index) -> tuple[Index, Index]:
-    """The rows of mesh edges (k, 2) that are among others as well, and their rows there."""
-    count = int(edges.max(initial=0)) + 1
-    _, here, there = np.intersect1d(
-        edges @ [count, 1], others @ [count, 1], assume_unique=True, return_indices=True
-    )
-    return here, there
 
 
 def _in_parts(work: Callable[[slice], None], slices: Iterable[slice], deadline: Deadline) -> None:

@@ -186,12 +186,7 @@ class Thresholds(Table):
 
 
 class Continuity(Table):
-    """When two configurations on neighboring vertices are joined by a continuous motion.
-
-    With ``border_length_m`` longer mesh edges are bisected where colors end or have a crack.
-    """
-
-    NEWER = ("border_length_m",)
+    """When two configurations on neighboring vertices are joined by a continuous motion."""
 
     base_step_rad: Annotated[FiniteFloat, Field(gt=0), IN_RADIANS]
     step_per_length_rad_per_m: NotNegative
@@ -199,7 +194,6 @@ class Continuity(Table):
     near_singular_determinant_m3: NotNegative | None = None
     probe_spacing_m: Positive
     validity_spacing_m: Positive | None = None
-    border_length_m: Positive | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -246,7 +240,8 @@ class Motion(Table):
     ``approach_speed_m_per_s`` at most, without it at ``speed_m_per_s``. It retracts by
     ``retract_m`` along the normal; between segments the arm keeps ``clearance_m`` from everything.
     A URDF has velocities, which ``joint_velocities_rad_per_s`` may lower, but no accelerations.
-    ``joint_jerks_rad_per_s3`` limits how fast accelerations change; without it nothing does.
+    ``joint_jerks_rad_per_s3`` is for judging: trajectories may not change accelerations faster.
+    Planned ones are not made to keep it.
     Lists of joints go from base to tool, with m in the place of rad for prismatic ones;
     ``home_rad`` is where the arm begins and ends, nowhere in particular without it. ``"free"`` asks
     for a free position, which is found.

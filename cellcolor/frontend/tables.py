@@ -188,9 +188,18 @@ def _settled(content: Any) -> Any:
     return tuple(map(_settled, content)) if isinstance(content, (list, tuple)) else content
 
 
+_GONE = {
+    "border_length_m": "for exact borders give the object a finer mesh, by max_edge_m (of a file) "
+    "or target_vertices (of a shape)",
+}
+"""Keys that files of earlier versions have, and what takes their place."""
+
+
 def _fault(error: ValidationError) -> InputError:
     """The first fault: ``("object", "radius_m")`` as ``object.radius_m``."""
     place, message = first_fault(error)
+    if message == "unknown key" and place[-1] in _GONE:
+        message = f"is no longer known: {_GONE[str(place[-1])]}"
     key = ""
     for part in place:
         key += f"[{part}]" if isinstance(part, int) else f".{part}" if key else part

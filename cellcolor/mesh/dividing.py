@@ -1,13 +1,8 @@
 """Triangles cut at new points on their sides, on both sides of an edge alike.
 
-Where the middle of a triangle's longest side is connected with the corner opposite, again and
-again, no angle gets smaller than half the smallest one that was there (Rosenberg and Stenger
-1975). So with any side of a triangle its longest one is bisected too (Rivara 1984).
-
-The six small triangles that every triangle of a mesh falls into.
-
-They lie between each of its corners, the middles of its sides and its centroid. Numbers 6 t + 2 k
-and 6 t + 2 k + 1 are those at the corner k of the triangle t (``docs/motion.md``).
+Beside that, the six small triangles that every triangle of a mesh falls into. They lie between each
+of its corners, the middles of its sides and its centroid. Numbers 6 t + 2 k and 6 t + 2 k + 1 are
+those at the corner k of the triangle t (``docs/motion.md``).
 """
 
 from __future__ import annotations
@@ -17,23 +12,14 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask, unit
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-_Pieces = dict[tuple[bool, bool, bool], list[tuple[int, int, int]]]
-"""By which of the sides ab, bc, ca are cut: the corners of the pieces. 0, 1, 2 are a, b, c, and 3,
-4, 5 the new points on ab, bc, ca. A diagonal goes from 7 to 6."""
-
-_AT_ONCE: _Pieces = {
+_PIECES = {
     (False, False, False): [(0, 1, 2)],
     (True, False, False): [(0, 3, 2), (3, 1, 2)],
     (True, True, False): [(3, 1, 4), (0, 3, 6), (7, 4, 2)],
     (True, True, True): [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)],
 }
-_LONGEST_FIRST: _Pieces = {  # ab, which is cut if any is
-    (False, False, False): [(0, 1, 2)],
-    (True, False, False): [(0, 3, 2), (3, 1, 2)],
-    (True, True, False): [(0, 3, 2), (3, 1, 4), (3, 4, 2)],
-    (True, False, True): [(3, 1, 2), (0, 3, 5), (3, 2, 5)],
-    (True, True, True): [(0, 3, 5), (3, 1, 4), (3, 4, 2), (3, 2, 5)],
-}
+"""By which of the sides ab, bc, ca are cut: the corners of the pieces. 0, 1, 2 are a, b, c, and 3,
+4, 5 the new points on ab, bc, ca. A diagonal goes from 7 to 6."""
 
 
 def new_points(mesh: TriangleMesh, marked: Mask) -> Index:
@@ -70,7 +56,7 @@ def cut(
         a, c, ab, bc = (points[names[two, corner]] for corner in (0, 2, 3, 4))
         other = ~(np.linalg.norm(a - bc, axis=1) < np.linalg.norm(ab - c, axis=1))
         names[two[other], 6:] = names[two[other]][:, [2, 3]]
-    return _pieces(names, _AT_ONCE)
+    return _pieces(names)
 
 
 def halved(mesh: TriangleMesh, marked: Mask) -> tuple[TriangleMesh, Index]:
@@ -85,8 +71,14 @@ def halved(mesh: TriangleMesh, marked: Mask) -> tuple[TriangleMesh, Index]:
 
 
 def with_longest_sides(mesh: TriangleMesh, marked: Mask) -> Mask:
-    """Marked edges (k,), and the longest side of every triangle that has a marked one."""
-    longest = np.take_along_axis(mesh.edge_of_side, _longest(mesh)[:, None], axis=1)[:, 0]
+    """Marked edges (k,), and the longest side of every triangle that has a marked one.
+
+    Of equally long sides the edge that comes first is the longest.
+    """
+    order = np.lexsort((-np.arange(len(marked)), mesh.lengths))
+    rank = np.empty(len(marked), dtype=np.int64)
+    rank[order] = np.arange(len(marked))
+    longest = order[rank[mesh.edge_of_side].max(axis=1)]
     marked = marked.copy()
     while True:
         missing = longest[marked[mesh.edge_of_side].any(axis=1) & ~marked[longest]]
@@ -95,33 +87,16 @@ def with_longest_sides(mesh: TriangleMesh, marked: Mask) -> Mask:
         marked[missing] = True
 
 
-def bisected_corners(mesh: TriangleMesh, marked: Mask) -> Index:
-    """The triangles (p, 3) once marked edges (k,) are bisected, in each the longest side first.
-
-    The longest sides are marked, see :func:`with_longest_sides`.
-    """
-    names = _from(_longest(mesh), mesh.corners, new_points(mesh, marked)[mesh.edge_of_side])
-    return _pieces(names, _LONGEST_FIRST)[0]
-
-
-def _longest(mesh: TriangleMesh) -> Index:
-    """Which side of each triangle (m,) is its longest; of equal ones the edge that comes first."""
-    lengths = mesh.lengths
-    rank = np.empty(len(lengths), dtype=np.int64)
-    rank[np.lexsort((-np.arange(len(lengths)), lengths))] = np.arange(len(lengths))
-    return np.asarray(rank[mesh.edge_of_side].argmax(axis=1))
-
-
 def _from(first: Index, corners: Index, middle: Index) -> Index:
     """Corners and new points (m, 6) of triangles turned so that a side of each comes first."""
     order = (first[:, None] + np.arange(3)) % 3
     return np.concatenate([np.take_along_axis(x, order, 1) for x in (corners, middle)], axis=1)
 
 
-def _pieces(names: Index, pieces: _Pieces) -> tuple[Index, Index]:
+def _pieces(names: Index) -> tuple[Index, Index]:
     is_cut = names[:, 3:6] >= 0
     found, of = [], []
-    for sides, parts in pieces.items():
+    for sides, parts in _PIECES.items():
         rows = np.flatnonzero((is_cut == sides).all(axis=1))
         found += [names[rows][:, part] for part in parts]
         of += [rows] * len(parts)

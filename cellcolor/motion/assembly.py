@@ -16,7 +16,7 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.motion.retraced import retraced, stretches
 from cellcolor.motion.strokes import Parting, Stroke
-from cellcolor.motion.timing import Speeds, timed, within_jerks
+from cellcolor.motion.timing import Speeds, timed
 from cellcolor.motion.ways import Transfer
 
 _NEAR = 0.01  # m, of the tip's way to and from contact, on which it keeps to the approach speed
@@ -106,7 +106,7 @@ def assembled(
     return Trajectory(
         name=name,
         joint_names=robot.joint_names,
-        times=within_jerks(times, joints, speeds),
+        times=times,
         joints=joints,
         points=points,
         normals=normals,

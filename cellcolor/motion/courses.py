@@ -70,7 +70,7 @@ def laid_out(
     Args:
         prepared: the scene.
         surface: the painted one.
-        normals: (n, 3) outward unit normals at its vertices.
+        normals: (n, 3) outward, at its vertices; of any length, which counts between them.
         branch: of the segment's color.
         lay: makes the segment's paths.
         refusals: where these do not go; it is told where samples fail.

@@ -35,7 +35,7 @@ def motion_of(prepared: PreparedScene) -> Motion:
         for key, given in (
             ("joint_velocities_rad_per_s", motion.joint_velocities_rad_per_s),
             ("joint_accelerations_rad_per_s2", motion.joint_accelerations_rad_per_s2),
-            ("joint_jerks_rad_per_s3", motion.joint_jerks_rad_per_s3),
+            ("joint_jerks_rad_per_s3", motion.joint_jerks_rad_per_s3),  # the judge needs them
             ("home_rad", motion.home),
         ):
             if given is not None and len(given) != robot.joints:
@@ -58,7 +58,7 @@ def motion_of(prepared: PreparedScene) -> Motion:
 
 
 def speeds_of(motion: Motion, robot: Robot) -> Speeds:
-    """The URDF's velocities, lowered where the setup says so, and its accelerations and jerks.
+    """The URDF's velocities, lowered where the setup says so, and the setup's accelerations.
 
     Raises:
         InputError: neither has the velocity of a joint.
@@ -70,9 +70,4 @@ def speeds_of(motion: Motion, robot: Robot) -> Speeds:
         name = robot.joint_names[int(np.argmax(np.isnan(velocities)))]
         message = "is missing or 0; give motion.joint_velocities_rad_per_s in the setup"
         raise InputError(str(robot.files[0]), f"joint[{name}].limit.velocity", message)
-    jerks = motion.joint_jerks_rad_per_s3
-    return Speeds(
-        velocities,
-        np.array(motion.joint_accelerations_rad_per_s2),
-        None if jerks is None else np.array(jerks),
-    )
+    return Speeds(velocities, np.array(motion.joint_accelerations_rad_per_s2))

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.arrays import Array
 from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import LeftOut, Trajectory
 from cellcolor.deadline import NEVER, Deadline
@@ -27,6 +26,7 @@ from cellcolor.motion.ways import Transfer
 from cellcolor.painting.paint import Painted
 from cellcolor.tool_paths.cover import check_spacing
 from cellcolor.tool_paths.measures import PathMeasures
+from cellcolor.tool_paths.region import Segments
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN
 
 OnPaths = Callable[[ToolPaths, tuple[PathMeasures, ...]], None]
@@ -56,7 +56,6 @@ class MotionPlan:
 def plan_motion(
     built: BuildResult,
     painted: Painted,
-    normals: Array,
     *,
     pattern: str = DEFAULT_PATTERN,
     seed: int = 0,
@@ -69,7 +68,6 @@ def plan_motion(
     Args:
         built: the scene and its labelled surface.
         painted: its surface in segments.
-        normals: (n, 3) outward unit normals at the vertices of the painted surface.
         pattern: of the tool paths.
         seed: of the sampling planner; the same seed gives the same motion.
         deadline: when to give up.
@@ -88,6 +86,8 @@ def plan_motion(
     planner = Transfers(prepared, motion, speeds.velocities, seed, deadline)
     clock = StageClock(deadline, progress)
     surface, segment_of = painted.surface, painted.segment_of
+    # Not of length 1: so their means are on the same way as those of the given surface.
+    normals = painted.interpolated(built.stages.surface.normals)
     color_of = _colors(painted)
     check_spacing(surface, segment_of, motion.spacing_m)
     branch_of = built.color_branch
@@ -96,7 +96,13 @@ def plan_motion(
         own_branch = np.array([branch_of[color] for color in color_of], dtype=np.int64)
         states = corner_states(prepared, small, own_branch, deadline)
     ground = Ground(
-        prepared, surface, normals, segment_of, color_of, small, states, pattern, motion, deadline
+        prepared,
+        Segments(surface, segment_of, color_of, normals),
+        small,
+        states,
+        pattern,
+        motion,
+        deadline,
     )
     with clock.timed("tool paths"):
         covered = [

@@ -50,7 +50,7 @@ def with_normals_of(samples: Samples, mesh: TriangleMesh, normals: Array) -> Sam
     Args:
         samples: of a path on the surface.
         mesh: the surface's.
-        normals: (n, 3) outward unit normals at its vertices.
+        normals: (n, 3) outward, at its vertices; of any length, which counts between them.
     """
     shares = mesh.shares(samples.faces, samples.points)
     turned = np.einsum("ki,kij->kj", shares, normals[mesh.corners[samples.faces]])

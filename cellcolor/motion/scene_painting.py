@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array, Index, unit
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of
@@ -39,7 +39,6 @@ class ScenePainting:
 
     Attributes:
         painted: the painting, its borders moved.
-        normals: (n, 3) outward unit normals at its vertices.
         built: the labelled surface that was painted, and what reaches it: what was given, unless it
             had to be solved again.
         decomposition: of that surface.
@@ -47,7 +46,6 @@ class ScenePainting:
     """
 
     painted: Painted
-    normals: Array
     built: BuildResult
     decomposition: Decomposition
     solution: Solution
@@ -87,14 +85,13 @@ def paint_scene(
         minima.append(solution.segments or 0)
         clock.begin("painting")
         drawn = paint(built.surface, decomposition, solution, deadline)
-        normals = drawn.interpolated(built.stages.surface.normals)
-        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
         whole = drawn.surface is built.surface
         finer = built.stages.surface
         stages = built.stages
         if not whole:
+            normals = unit(drawn.interpolated(built.stages.surface.normals))
             finer = Surface(drawn.surface.vertices, drawn.surface.faces, normals)
-            stages = judged(replace(prepared, surface=finer), clock).stages
+            stages = judged(replace(prepared, surface=finer), clock)
         clock.begin("moving borders")
         branch = np.array(built.color_branch)
         cost = color_costs(prepared.robot, stages.candidates)[:, branch]
@@ -102,7 +99,7 @@ def paint_scene(
         refused = () if whole else _refused(painted, stages, branch)
         if not refused or len(minima) == _TIMES:
             painted = replace(painted, minima=tuple(minima), refused=refused)
-            return ScenePainting(painted, normals, built, decomposition, solution)
+            return ScenePainting(painted, built, decomposition, solution)
         clock.begin("solving again")
         left_alone = built.left_alone
         built = result_of(replace(prepared, surface=finer), stages, clock)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cellcolor.arrays import Array, Index, Mask
-from cellcolor.data.surface import LabelledSurface
+from cellcolor.arrays import Mask
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.frontend.prepared import PreparedScene
@@ -20,8 +19,9 @@ from cellcolor.motion.refusing import ArmRefusals
 from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
 from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
 from cellcolor.motion.windings import Walls, parts_of, walls_of
-from cellcolor.tool_paths.cover import Covered, cover
+from cellcolor.tool_paths.cover import Bounds, Covered, cover
 from cellcolor.tool_paths.overlap import Overlap
+from cellcolor.tool_paths.region import Segments
 
 _SHORT = 2.0  # spacings; no place of such a stroke is as large as a footprint
 _SPARED = 0.005  # of the strokes' length, at most, of what is left out because it is short
@@ -37,10 +37,7 @@ class Ground:
 
     Attributes:
         prepared: the scene.
-        surface: the painted surface.
-        normals: (n, 3) outward unit normals at its vertices.
-        segment_of: (n,) the segment of each of its vertices, -1 without a color.
-        colors: of each segment.
+        segments: of the painted surface.
         small: its small triangles.
         states: what the arm does at their corners.
         pattern: of the tool paths.
@@ -49,10 +46,7 @@ class Ground:
     """
 
     prepared: PreparedScene
-    surface: LabelledSurface
-    normals: Array
-    segment_of: Index
-    colors: Sequence[int]
+    segments: Segments
     small: SmallTriangles
     states: CornerStates
     pattern: str
@@ -89,9 +83,10 @@ def strokes_of(ground: Ground, segment: int, branch: int) -> SegmentStrokes:
     Raises:
         OutOfTime: the deadline came first.
     """
-    prepared, surface, motion = ground.prepared, ground.surface, ground.motion
+    prepared, surface, motion = ground.prepared, ground.segments.surface, ground.motion
     small, space = ground.small, joint_space(prepared)
-    own = ground.segment_of == segment
+    own = ground.segments.segment_of == segment
+    alone = ground.segments._replace(segment_of=np.where(own, segment, -1))
 
     def refused_near(touched: Mask) -> ArmRefusals:
         around = _AROUND * motion.spacing_m
@@ -106,24 +101,19 @@ def strokes_of(ground: Ground, segment: int, branch: int) -> SegmentStrokes:
     ) -> Courses:
         def lay() -> Covered:
             return cover(
-                surface,
-                np.where(own, segment, -1),
-                ground.colors,
-                ground.normals,
+                alone,
                 pattern=ground.pattern,
                 spacing_m=motion.spacing_m,
                 tool_radius_m=motion.tool_radius_m,
-                walls=walls,
-                refusals=refusals,
-                overlap=overlap,
+                bounds=Bounds(walls, refusals, overlap),
                 deadline=ground.deadline,
             )
 
-        normals = small.normals[: len(surface.vertices)]
+        normals = ground.segments.normals
         return laid_out(prepared, surface, normals, branch, lay, refusals, ground.deadline)
 
     if motion.overlap_m:
-        overlap = Overlap.of(surface, ground.segment_of, ground.colors, segment, motion.overlap_m)
+        overlap = Overlap.of(ground.segments, segment, motion.overlap_m)
         refusals = refused_near(overlap.widened(surface, own))
         courses = courses_with(refusals, overlap=overlap)
         strokes = _on(ground, courses, branch)
@@ -134,7 +124,7 @@ def strokes_of(ground: Ground, segment: int, branch: int) -> SegmentStrokes:
     strokes = _on(ground, courses, branch)
     if all(space.fits(stroke.joints) for stroke in strokes):
         return SegmentStrokes(courses, strokes, None)
-    color = ground.colors[segment]
+    color = ground.segments.colors[segment]
     cracks = [crack for crack in surface.cracks if color in crack.colors]
     closed = small.whole.marked([(crack.i, crack.j) for crack in cracks])
     parts = parts_of(small, ground.states, segment, closed)

@@ -47,7 +47,7 @@ class SmallTriangles:
 
     @classmethod
     def of(cls, whole: TriangleMesh, normals: Array, segment_of: Index) -> SmallTriangles:
-        """Those of a mesh with outward unit normals (n, 3) and the segment (n,) of each vertex."""
+        """Those of a mesh with outward normals (n, 3) and the segment (n,) of each vertex."""
         fine, side = small_triangles(whole)
         return cls(
             whole,

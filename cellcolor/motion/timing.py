@@ -2,35 +2,27 @@
 
 Between two samples every joint moves in proportion to time, so limits hold for what is written
 down: the velocity of each step, how much it differs from that of the next over the time from middle
-to middle, and how far it is off the mean of its two neighbors'. Jerks are those of
-:func:`least_jerks`.
+to middle, and how far it is off the mean of its two neighbors'. Jerks are not limited.
 
 Velocities and their changes are planned in two sweeps, backward and forward, each of which makes
 every step as fast as its neighbor allows: the fastest way where all limits have that form
 (Consolini, Locatelli, Minari, Nagy and Vajk, Optimal time-complexity speed planning for robot
-manipulators, 2019).
+manipulators, 2019). The library toppra takes three to nine times as long for the same. Its path is
+a spline through the samples, so between samples it accelerates by up to twice what is allowed.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array
 
 _LEAST = 0.001  # s, of a step; where neither tool nor joints move
 _BOW = 0.02  # rad or m; so far at most a motion speeds up beside a straight line
 _MARGIN = 0.995  # of the accelerations; the sweeps take neighboring steps for about equally long
 _ROUNDS = 60  # of sweeps; 5 to 15 are enough on sharp edges
-_MARGIN_OF_JERKS = 0.98  # other choices of samples say a little more
-_CYCLE = 0.008  # s, of a controller; jerks are measured over no less
-_AROUND = 5.0  # times what an acceleration takes to build up; slowing down faster jerks itself
-_TICK = 0.002  # s, in which that is measured out
-_STRETCHES = 200  # of what jerks too much; most drives need fewer than 30
-_MORE = 1.001  # times longer than needed, for rounding
 
 
 @dataclass(frozen=True)
@@ -40,18 +32,16 @@ class Speeds:
     Attributes:
         velocities: (joints,) rad/s or m/s.
         accelerations: (joints,) rad/s^2 or m/s^2.
-        jerks: (joints,) rad/s^3 or m/s^3; None without a limit.
     """
 
     velocities: Array
     accelerations: Array
-    jerks: Array | None = None
 
 
 def timed(
     joints: Array, speeds: Speeds, points: Array | None = None, tool_speed: float | Array = np.inf
 ) -> Array:
-    """Times (k,) of the samples of a motion from rest to rest, from 0 on, s; jerks are not limited.
+    """Times (k,) of the samples of a motion from rest to rest, from 0 on, s.
 
     Args:
         joints: (k, joints) rad or m, unwound, neighbors near each other.
@@ -72,7 +62,7 @@ def timed(
     for _ in range(_ROUNDS):
         squares = _swept(joints, least, cap, _MARGIN * speeds.accelerations)
         times = np.concatenate([[0.0], np.cumsum(least / np.sqrt(squares))])
-        excess = (accelerations(times, joints) / speeds.accelerations).max(axis=1)
+        excess = (accelerations(times, joints, speeds) / speeds.accelerations).max(axis=1)
         if excess.max() <= 1.0:
             return times
         slower = np.maximum(excess / _MARGIN, 1.0)
@@ -81,7 +71,7 @@ def timed(
     return np.asarray(times * np.sqrt(excess.max()))
 
 
-def accelerations(times: Array, joints: Array) -> Array:
+def accelerations(times: Array, joints: Array, speeds: Speeds) -> Array:
     """The least accelerations (k, joints) at the samples of a motion from rest to rest, rad/s^2.
 
     No smooth motion through the samples has less. Between neighboring steps it is the change of
@@ -89,79 +79,24 @@ def accelerations(times: Array, joints: Array) -> Array:
     is off (u + w) / 2, by r + s + t: within s of the middle step velocities differ by as at most,
     and their mean is at most as/4 off the middle of the first and the last, which are at most ar/2
     and at/2 off u and w.
+
+    Beside a step that takes long, a motion may leave the straight line by ``_BOW`` only, so a long
+    step has no more time for a change than the longest one that it can be left on.
     """
-    steps = np.diff(times)
-    velocity = np.diff(joints, axis=0) / steps[:, None]
+    passed = np.diff(times)[:, None]
+    longest = np.sqrt(8 * _BOW / speeds.accelerations)
     rest = np.zeros((1, joints.shape[1]))
-    change = np.diff(np.concatenate([rest, velocity, rest]), axis=0)
-    around = np.append(steps, 0.0) + np.insert(steps, 0, 0.0)
-    least = np.abs(change) / (around / 2)[:, None]
+    velocity = np.concatenate([rest, np.diff(joints, axis=0) / passed, rest])
+    beside, along = (
+        np.concatenate([rest, np.minimum(passed, most), rest]) for most in (longest, 2 * longest)
+    )
+    least = np.abs(np.diff(velocity, axis=0)) / ((beside[1:] + beside[:-1]) / 2)
     # Each step between its neighbors, rest at both ends; it counts at both of its samples.
-    padded = np.concatenate([rest, velocity, rest])
-    three = np.convolve(np.concatenate([[0.0], steps, [0.0]]), np.ones(3), "valid")
-    bent = np.abs(velocity - (padded[2:] + padded[:-2]) / 2) / (three / 4)[:, None]
+    three = (beside[2:] + along[1:-1] + beside[:-2]) / 4
+    bent = np.abs(velocity[1:-1] - (velocity[2:] + velocity[:-2]) / 2) / three
     least[:-1] = np.maximum(least[:-1], bent)
     least[1:] = np.maximum(least[1:], bent)
     return np.asarray(least)
-
-
-def least_jerks(times: Array, joints: Array) -> tuple[Array, Index, Index]:
-    """The least jerks of a motion from rest to rest, each by four samples a cycle or more apart.
-
-    No smooth motion through four samples has less everywhere: six times their third divided
-    difference is a mean of the jerks between the first and the last. The arm rests before the first
-    sample of the motion and after its last one.
-
-    Returns:
-        (n, joints) rad/s^3 or m/s^3, and the samples (n,) from which and to which.
-    """
-    count, pause = len(times), _CYCLE * np.arange(1, 4)
-    times = np.concatenate([times[0] - pause[::-1], times, times[-1] + pause])
-    joints = np.concatenate([joints[[0, 0, 0]], joints, joints[[-1, -1, -1]]])
-    rows = [np.arange(len(times))]
-    for _ in range(3):
-        rows = [some[rows[-1] < len(times)] for some in rows]
-        rows.append(np.searchsorted(times, times[rows[-1]] + _CYCLE * (1 - 1e-9)))
-    rows = [some[rows[-1] < len(times)] for some in rows]
-    differences = [joints[some] for some in rows]
-    for order in range(1, 4):
-        differences = [
-            (after - before) / (times[rows[k + order]] - times[rows[k]])[:, None]
-            for k, (before, after) in enumerate(pairwise(differences))
-        ]
-    first, last = (np.clip(some - 3, 0, count - 1) for some in (rows[0], rows[-1]))
-    return 6 * np.abs(differences[0]), first, last
-
-
-def within_jerks(times: Array, joints: Array, speeds: Speeds) -> Array:
-    """The times (k,) of a motion from rest to rest, slower wherever it jerks too much, s."""
-    if speeds.jerks is None or len(times) < 2:
-        return times
-    width = 2 * int(_AROUND * (speeds.accelerations / speeds.jerks).max() / (2 * _TICK)) + 1
-    for _ in range(_STRETCHES):
-        excess = _excess(times, joints, speeds, _MARGIN_OF_JERKS * speeds.jerks)
-        if excess.max() <= 1.0:
-            return times
-        tick = np.rint((times - times[0]) / _TICK).astype(np.int64)
-        longest = np.ones(tick[-1] + 1)
-        np.maximum.at(longest, tick, np.where(excess > 1.0, excess * _MORE, 1.0))
-        longer = uniform_filter1d(maximum_filter1d(longest, width), width)[tick]
-        steps = np.diff(times) * np.maximum(longer[1:], longer[:-1])
-        times = times[0] + np.concatenate([[0.0], np.cumsum(steps)])
-    most = float(_excess(times, joints, speeds, _MARGIN_OF_JERKS * speeds.jerks).max())
-    return np.asarray(times[0] + (times - times[0]) * max(1.0, most))
-
-
-def _excess(times: Array, joints: Array, speeds: Speeds, jerks: Array) -> Array:
-    """(k,) how many times longer the steps beside a sample have to be, by jerk or acceleration."""
-    found, first, last = least_jerks(times, joints)
-    jerk = (found / jerks).max(axis=1)
-    excess = np.zeros(len(times))
-    for offset in range(int((last - first).max(initial=0)) + 1):
-        inside = first + offset <= last
-        np.maximum.at(excess, first[inside] + offset, jerk[inside])
-    bent = (accelerations(times, joints) / speeds.accelerations).max(axis=1)
-    return np.asarray(np.maximum(np.cbrt(excess), np.sqrt(bent)))
 
 
 def _swept(joints: Array, least: Array, cap: Array, accelerations: Array) -> Array:

@@ -9,7 +9,7 @@ constraints that contradict each other (Liffiton and Sakallah, 2008).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
 
@@ -25,7 +25,7 @@ from cellcolor.frontend.judging_again import judged_asking_less, judged_asking_m
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.relaxing import Relaxation, ToolLength, relaxations_of, without
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Judged, Stages, border_levels
+from cellcolor.frontend.stages import Stages, judged
 from cellcolor.questions.explanation import BranchHere, Explanation, RelaxedMinimum
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
@@ -60,7 +60,7 @@ def explained(
     report("the scene as it is")
     asked = _Asked(prepared, options)
     base = asked.base
-    here = () if at is None else _reasons_at(*asked.built, at)
+    here = () if at is None else _reasons_at(prepared, asked.stages, at)
     alone: dict[Relaxation, RelaxedMinimum] = {}
     amounts: list[RelaxedMinimum] = []
     sets: list[RelaxedMinimum] = []
@@ -109,15 +109,10 @@ def _rank(row: RelaxedMinimum) -> tuple[float, float]:
 
 @dataclass(frozen=True, eq=False)
 class _Known:
-    """A solved scene: each surface on the way to the finest, with its stages, and the result."""
+    """A solved scene: its stages, and the result."""
 
-    levels: list[tuple[PreparedScene, Judged]]
+    stages: Stages
     row: RelaxedMinimum
-
-    @property
-    def coarse(self) -> Judged:
-        """On the surface that the scene has before borders are refined."""
-        return self.levels[0][1]
 
 
 class _Asked:
@@ -131,17 +126,16 @@ class _Asked:
 
     def __init__(self, prepared: PreparedScene, options: Options) -> None:
         self._prepared, self._options = prepared, options
-        self._known = self._solved(border_levels(prepared, self._clock), ())
+        self._known = self._solved(prepared, judged(prepared, self._clock), ())
         self.base, self.things = self._known.row, relaxations_of(prepared)
         self._quick = prepared.arm.named and prepared.scene.tolerance is None
         # The scene without each thing that was tried alone, where more is valid then.
         self._freer: dict[Relaxation, _Known] = {}
 
     @property
-    def built(self) -> tuple[PreparedScene, Stages]:
-        """The scene as it is, on its finest surface."""
-        prepared, finest = self._known.levels[-1]
-        return prepared, finest.stages
+    def stages(self) -> Stages:
+        """Of the scene as it is."""
+        return self._known.stages
 
     @property
     def _clock(self) -> StageClock:
@@ -155,7 +149,7 @@ class _Asked:
         """
         known, rest = self._nearest(what)
         found = self._relaxed(what, known, rest)
-        if self._quick and len(what) == 1 and found.levels is not known.levels:
+        if self._quick and len(what) == 1 and found.stages is not known.stages:
             (one,) = what
             if one in self.things and one.reasons is not None:
                 self._freer[one] = found
@@ -168,7 +162,7 @@ class _Asked:
         try:
             if not self._quick or any(one.reasons is None for one in what):
                 relaxed = without(self._prepared, what)
-                return self._solved(border_levels(relaxed, self._clock), what)
+                return self._solved(relaxed, judged(relaxed, self._clock), what)
             return self._again(judged_asking_less, known, what, _reasons_of(rest))
         except InputError as error:
             note = f"it cannot be built: {error}"
@@ -183,7 +177,7 @@ class _Asked:
         freer = [one for one in what if one in self._freer]
         if not freer:
             return self._known, list(what)
-        first = max(freer, key=lambda one: self._freer[one].coarse.stages.candidates.valid.sum())
+        first = max(freer, key=lambda one: self._freer[one].stages.candidates.valid.sum())
         return self._freer[first], [one for one in what if one != first]
 
     def _without_some(self, one: Relaxation, amount: float, less: _Known) -> _Known:
@@ -197,7 +191,7 @@ class _Asked:
 
     def _again(
         self,
-        judged_anew: Callable[[PreparedScene, Judged, frozenset[str], StageClock], Judged],
+        judged_anew: Callable[[PreparedScene, Stages, frozenset[str], StageClock], Stages],
         known: _Known,
         what: Sequence[Relaxation],
         reasons: frozenset[str],
@@ -208,27 +202,22 @@ class _Asked:
             judged_anew: judges with more or with fewer tests.
             reasons: the tests in which the two differ.
         """
-        relaxed, first = without(self._prepared, what), None
-        for prepared, before in known.levels:
-            here = replace(relaxed, surface=prepared.surface)
-            found = judged_anew(here, before, reasons, self._clock)
-            first = first or found
-            if not _same(found.stages, before.stages):
-                return self._solved(border_levels(relaxed, self._clock, first), what)
+        relaxed = without(self._prepared, what)
+        found = judged_anew(relaxed, known.stages, reasons, self._clock)
+        if not _same(found, known.stages):
+            return self._solved(relaxed, found, what)
         names, keys = _in_words(what)
         return replace(known, row=replace(known.row, relaxed=names, keys=keys))
 
     def _solved(
-        self, levels: Iterable[tuple[PreparedScene, Judged]], what: Sequence[Relaxation]
+        self, prepared: PreparedScene, stages: Stages, what: Sequence[Relaxation]
     ) -> _Known:
-        known = list(levels)
-        prepared, finest = known[-1]
-        surface, _ = labelled(prepared, finest.stages, {})
+        surface, _ = labelled(prepared, stages, {})
         deadline = self._options.deadline
         instance = decomposition_of(surface, deadline=deadline).instance
         areas = surface.vertex_areas
         covered = float(areas[surface.colored].sum())
-        reached = ~np.isnan(finest.stages.candidates.configurations[:, :, 0]).all(axis=1)
+        reached = ~np.isnan(stages.candidates.configurations[:, :, 0]).all(axis=1)
         shares = covered / max(float(areas[reached].sum()), covered, 1e-12), covered / areas.sum()
         found: tuple[int | None, int, bool, str] = None, 0, True, "nothing is reached"
         if not instance.nothing_to_cover:
@@ -247,7 +236,7 @@ class _Asked:
         segments, at_least, proved, note = found
         names, keys = _in_words(what)
         row = RelaxedMinimum(names, keys, segments, at_least, *shares, proved, note)
-        return _Known(known, row)
+        return _Known(stages, row)
 
     def least_amount(self, one: Relaxation) -> RelaxedMinimum:
         """The row of the least amount that saves a lift-off; if none does, of the greatest."""
@@ -290,7 +279,7 @@ class _Asked:
         named = [one for one in self.things if one.reasons is not None]
         known, rest = self._nearest(named)
         relaxed = without(self._prepared, named)
-        free = judged_asking_less(relaxed, known.coarse, _reasons_of(rest), self._clock)
+        free = judged_asking_less(relaxed, known.stages, _reasons_of(rest), self._clock)
         report("what holds anything back")
         useful = [one for one in named if self._refuses(one, named, free)]
         doubtful = [one for one in named if one not in useful]
@@ -306,15 +295,15 @@ class _Asked:
                 return sorted(found, key=_rank)
         return []
 
-    def _refuses(self, one: Relaxation, things: Sequence[Relaxation], free: Judged) -> bool:
+    def _refuses(self, one: Relaxation, things: Sequence[Relaxation], free: Stages) -> bool:
         """Whether a thing alone refuses a candidate that is valid without any of the things."""
         only = without(self._prepared, [other for other in things if other != one])
-        test, valid = only.judge.only(_reasons_of([one])), free.stages.candidates.valid
-        verdicts = test(free.stages.candidates.configurations[valid], self._options.deadline)
+        test, valid = only.judge.only(_reasons_of([one])), free.candidates.valid
+        verdicts = test(free.candidates.configurations[valid], self._options.deadline)
         return bool((verdicts.reasons != VALID).any())
 
     def _cutting(
-        self, some: Sequence[Relaxation], things: Sequence[Relaxation], free: Judged
+        self, some: Sequence[Relaxation], things: Sequence[Relaxation], free: Stages
     ) -> list[Relaxation]:
         """Those of some things that refuse no candidate and cut a link, once nothing else does.
 
@@ -324,7 +313,7 @@ class _Asked:
             return []
         only = without(self._prepared, [other for other in things if other not in some])
         held = judged_asking_more(only, free, _reasons_of(some), self._clock)
-        if _same(held.stages, free.stages):
+        if _same(held, free):
             return []
         if len(some) == 1:
             return list(some)

@@ -25,7 +25,7 @@ from cellcolor.frontend.parts.remeshing import fold_angle, folds, length_for, re
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import with_finer_borders
+from cellcolor.frontend.stages import judged
 from cellcolor.questions.placements import VARIABLES, PlacedMinimum, Pose
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
@@ -157,12 +157,11 @@ def coarse_scene(scene: Scene, vertices: int, deadline: Deadline) -> Scene:
 
     A shape that says how many vertices it has gets fewer. Any other surface is remeshed; if it is
     so coarse that it folds over itself, it is remeshed to half as many vertices more, and so on up
-    to the scene's own mesh. Borders are not refined.
+    to the scene's own mesh.
 
     Raises:
         InputError: the scene cannot be used.
     """
-    scene = scene.with_setup(scene.setup.varied(continuity={"border_length_m": None}))
     surface = scene.covered(deadline)
     if len(surface.vertices) <= _FINE_ENOUGH * vertices:
         return scene
@@ -246,7 +245,7 @@ def stands_in(prepared: PreparedScene) -> str | None:
 
 def _minimum(prepared: PreparedScene, pose: Pose, options: Options) -> PlacedMinimum:
     clock = StageClock(options.deadline, None)
-    surface, _ = labelled(*with_finer_borders(prepared, clock), {})
+    surface, _ = labelled(prepared, judged(prepared, clock), {})
     instance = decomposition_of(surface, deadline=options.deadline).instance
     areas = surface.vertex_areas
     share = float(areas[surface.colored].sum() / areas.sum())

@@ -30,7 +30,7 @@ class Candidates:
     """Set-ups that could be used.
 
     Attributes:
-        scenes: of each, with the part in its place and borders that are not refined.
+        scenes: of each, with the part in its place.
         surfaces: of each, in the part's own frame; all on one mesh.
         refused: why others cannot be used, a sentence each.
     """
@@ -67,8 +67,7 @@ def candidates_of(
     refused: list[str] = []
     part: LabelledSurface | None = None
     for given in scenes:
-        own = given.with_setup(given.setup.varied(continuity={"border_length_m": None}))
-        prepared = prepare(own.varied(file=given.file), deadline)
+        prepared = prepare(given, deadline)
         _check_same_part(part, prepared)
         for pose in dict.fromkeys((pose_of(given.placement), *poses)):
             report(f"set-up {len(found) + len(refused) + 1}")
@@ -85,7 +84,7 @@ def candidates_of(
                     file = None if given.file is None else str(given.file)
                     message = f"{_in_words(pose)} is no set-up: {error.message}"
                     raise InputError(file, "placement", message) from error
-                refused.append(f"{own.name} at {_in_words(pose)}: {error.message}")
+                refused.append(f"{given.name} at {_in_words(pose)}: {error.message}")
                 continue
             part = part or surface
             placement = Placement(position_m=pose[:3], rpy_rad=pose[3:])
@@ -107,7 +106,7 @@ def _built(prepared: PreparedScene, pose: Pose, deadline: Deadline) -> LabelledS
     within = stands_in(there)
     if within is not None:
         raise InputError(None, "placement", f"the part stands in {within}")
-    surface, _ = labelled(there, judged(there, StageClock(deadline, None)).stages, {})
+    surface, _ = labelled(there, judged(there, StageClock(deadline, None)), {})
     if not any(surface.vertex_colors):
         raise InputError(None, None, "nothing is reached")
     decomposition_of(surface, deadline=deadline)  # refuses cells that are not planar

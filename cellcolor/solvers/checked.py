@@ -20,7 +20,7 @@ from cellcolor.data.solution import (
     Status,
     count_segments,
 )
-from cellcolor.data.wording import lift_offs_of
+from cellcolor.data.wording import count, lift_offs_of
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, RefusedResult
 from cellcolor.solvers.bounds.cover import hard_cells
@@ -111,6 +111,13 @@ def solve(
         # Covering nothing of a surface in 0 segments would be no answer to anybody's question.
         note = "No point of the surface can be covered: there is nothing to divide."
         answer = Answer(None, (), (), notes=(*answer.notes, note))
+    doubtful = (instance.meta or {}).get("doubtful_edges")
+    if isinstance(doubtful, list) and doubtful:
+        note = (
+            f"Whatever is proved is proved of this labelling: {count(len(doubtful), 'mesh edge')} "
+            "of its surface are doubtful."
+        )
+        answer = replace(answer, notes=(*answer.notes, note))
     return checked_solution(instance, options, solver, answer, time.monotonic() - start)
 
 

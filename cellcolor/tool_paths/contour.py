@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from cellcolor.arrays import Array, Index
@@ -26,18 +24,10 @@ _NARROWEST, _WIDEST = 0.85, 1.05  # between which spacings are made to fit, in w
 _CORE = 0.7  # where a core reaches so far, in spacings, inside the last loop, there is one more
 
 
-Join = Callable[[Triangles, list[Index], float, Deadline], list[int]]
-"""Makes one path of loops: a mesh, the loops as rows of its edges, the spacing in m, a deadline."""
-
-
-def lay_contours(
-    mesh: Triangles, spacing: float, deadline: Deadline, join: Join = join_loops
-) -> Laid:
+def lay_contours(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
     """Loops at half a spacing from the border, one and a half, and so on, joined.
 
     On a closed mesh the distance is from a vertex, and the first loop goes round it.
-
-    ``join`` makes one path of the loops.
     """
     mesh = mesh.refined(FINEST * spacing)
     deadline.check()
@@ -49,7 +39,7 @@ def lay_contours(
     distances = evened(mesh, distances, EVENED * spacing)
     # No line ends at the border.
     distances = np.where(mesh.border, np.minimum(distances, _MOVED * spacing), distances)
-    return lay_loops(mesh, distances, spacing, deadline, join)
+    return _lay_loops(mesh, distances, spacing, deadline)
 
 
 def _straight_border(mesh: Triangles, spacing: float) -> tuple[Index, Array]:
@@ -81,9 +71,7 @@ def _straight_border(mesh: Triangles, spacing: float) -> tuple[Index, Array]:
     return np.concatenate(vertices), np.clip(np.concatenate(offsets), -most, most)
 
 
-def lay_loops(
-    mesh: Triangles, distances: Array, spacing: float, deadline: Deadline, join: Join = join_loops
-) -> Laid:
+def _lay_loops(mesh: Triangles, distances: Array, spacing: float, deadline: Deadline) -> Laid:
     """Join the loops at half a spacing, one and a half, and so on of a field of distances.
 
     Args:
@@ -103,7 +91,7 @@ def lay_loops(
     cores = slice_along(sliced.mesh, heights, np.array([_CORE * spacing]))
     rows += [line.vertices for line in level_lines(cores) if len(line.vertices) > 2]
     deadline.check()
-    return Laid(cores.mesh, join(cores.mesh, rows, spacing, deadline))
+    return Laid(cores.mesh, join_loops(cores.mesh, rows, spacing, deadline))
 
 
 def _fitting(farthest: float, spacing: float) -> float:

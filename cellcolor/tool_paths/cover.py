@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +19,7 @@ from cellcolor.tool_paths.interface import Laid, Pattern
 from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
 from cellcolor.tool_paths.overlap import Overlap, clipped, owned
 from cellcolor.tool_paths.refused import Refusals, RefusedPlace, without_refused
-from cellcolor.tool_paths.region import Region, regions_of
+from cellcolor.tool_paths.region import Region, Segments, regions_of
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
 from cellcolor.tool_paths.rounding import Line, rounded
 from cellcolor.tool_paths.spurs import with_spurs
@@ -62,34 +62,39 @@ class Covered:
         return f"<{type(self).__name__} {self}>"
 
 
+@dataclass(frozen=True, eq=False)
+class Bounds:
+    """Where paths may lie, besides on their segments.
+
+    Attributes:
+        walls: mesh edges that no path may cross, like cracks of whatever segment is there.
+        refusals: where the tool must not touch the segments.
+        overlap: how far paths may go beyond the border of the only segment.
+    """
+
+    walls: Collection[tuple[int, int]] = ()
+    refusals: Refusals | None = None
+    overlap: Overlap | None = None
+
+
 def cover(
-    surface: LabelledSurface,
-    segment_of: Index,
-    colors: Sequence[int],
-    normals: Array,
+    segments: Segments,
     *,
     pattern: str = DEFAULT_PATTERN,
     spacing_m: float,
     tool_radius_m: float,
-    walls: Collection[tuple[int, int]] = (),
-    refusals: Refusals | None = None,
-    overlap: Overlap | None = None,
+    bounds: Bounds | None = None,
     deadline: Deadline = NEVER,
     progress: Callable[[str], None] | None = None,
 ) -> Covered:
     """Lay a path on every connected part of every segment (docs/tool-paths.md).
 
     Args:
-        surface: the painted surface.
-        segment_of: (n,) the segment of each vertex, -1 where it has none.
-        colors: of each segment.
-        normals: (n, 3) outward unit normals at the vertices.
+        segments: of the painted surface.
         pattern: the name of a registered pattern.
         spacing_m: desired distance between neighboring passes, m.
         tool_radius_m: of the tool's footprint, m.
-        walls: mesh edges that no path may cross, like cracks of whatever segment is there.
-        refusals: where the tool must not touch the segments.
-        overlap: how far paths may go beyond the border of the only segment.
+        bounds: where paths may lie.
         deadline: when to give up.
         progress: told in a few words what is being done.
 
@@ -98,12 +103,10 @@ def cover(
             than the part, or the spacing is so small that the meshes would not fit into memory.
         OutOfTime: the deadline came first.
     """
-    lay = find_pattern(pattern)
+    lay, surface = find_pattern(pattern), segments.surface
     _check_lengths(surface, spacing_m, tool_radius_m)
     paths, measures, along_border = [], [], []
-    parts, uncovered = _parts(
-        surface, segment_of, colors, normals, walls, refusals, overlap, spacing_m
-    )
+    parts, uncovered = _parts(segments, bounds or Bounds(), spacing_m)
     for number, (region, part) in enumerate(parts):
         deadline.check()
         if progress is not None:
@@ -131,16 +134,10 @@ def cover(
 
 
 def _parts(
-    surface: LabelledSurface,
-    segment_of: Index,
-    colors: Sequence[int],
-    normals: Array,
-    walls: Collection[tuple[int, int]],
-    refusals: Refusals | None,
-    overlap: Overlap | None,
-    spacing: float,
+    segments: Segments, bounds: Bounds, spacing: float
 ) -> tuple[list[tuple[Region, Triangles]], list[Uncovered]]:
     """The meshes that paths are laid on, each with its region, and what of segments is refused."""
+    surface, refusals, overlap = segments.surface, bounds.refusals, bounds.overlap
 
     def allowed(mesh: Triangles) -> tuple[list[Triangles], list[RefusedPlace]]:
         if refusals is None:
@@ -148,7 +145,7 @@ def _parts(
         return without_refused(mesh, refusals, _REFUSED * spacing, _LEAST_AREA * spacing**2)
 
     parts, uncovered = [], []
-    for region in regions_of(surface, segment_of, colors, normals, walls):
+    for region in regions_of(segments, bounds.walls):
         own, refused = allowed(region.mesh)
         parts += [(region, part) for part in own]
         uncovered += [
@@ -156,11 +153,11 @@ def _parts(
             for place in refused
         ]
     if overlap is not None:  # refusals beyond the border do not count for the segment
-        inside = segment_of >= 0
-        widened = np.where(overlap.widened(surface, inside), segment_of.max(), -1)
+        inside = segments.segment_of >= 0
+        widened = np.where(overlap.widened(surface, inside), segments.segment_of.max(), -1)
         parts = [
             (region, part)
-            for region in regions_of(surface, widened, colors, normals, walls)
+            for region in regions_of(segments._replace(segment_of=widened), bounds.walls)
             for mesh in clipped(region.mesh, surface, inside, overlap.beyond, _REFUSED * spacing)
             for part in allowed(mesh)[0]
             if owned(part, surface, inside).any()

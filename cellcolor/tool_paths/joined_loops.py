@@ -36,7 +36,7 @@ class _Bridge:
 
 
 @dataclass
-class Door:
+class _Door:
     """Two bridges between two loops, or twice the same."""
 
     loops: tuple[int, int]
@@ -49,7 +49,7 @@ class Door:
         return self.bridges[0].second, self.bridges[1].second
 
 
-class Loop:
+class _Loop:
     """A closed row of vertices, with the distance along it to each."""
 
     def __init__(self, mesh: Triangles, row: Index) -> None:
@@ -66,18 +66,13 @@ class Loop:
             return forward, a, b
         return self.length - forward, b, a
 
-    def moved(self, place: int, length: float) -> int:
-        """The place that is so far ahead of one, m; behind it if that is negative."""
-        there = (float(self.along[place]) + length) % self.length
-        return int(np.searchsorted(self.along, there)) % len(self.row)
-
     def inside(self, place: int, arc: tuple[int, int]) -> bool:
         """Whether a place is on the way from one place forward to another."""
         count = len(self.row)
         return (place - arc[0]) % count <= (arc[1] - arc[0]) % count
 
 
-Part = tuple[int, int, int, bool, Door | None]
+_Part = tuple[int, int, int, bool, _Door | None]
 """A loop by its number, the places where its walk begins and ends, whether it is walked forward,
 and the door that it was entered by."""
 
@@ -90,17 +85,19 @@ def join_loops(mesh: Triangles, rows: list[Index], gap: float, deadline: Deadlin
         rows: the loops.
         gap: wanted distance between the two bridges of a door, m.
     """
-    loops, doors = doors_between(mesh, rows, gap)
+    loops, doors = _doors_between(mesh, rows, gap)
     deadline.check()
-    at = by_loop(doors)
+    at = _by_loop(doors)
     # Begin where no door leaves a piece out.
     start = loops[0].arc(*at[0][0].places(0))[2] if at.get(0) else 0
-    return walked(loops, at, [(0, start, start, True, None)])
+    return _walked(loops, at, [(0, start, start, True, None)])
 
 
-def doors_between(mesh: Triangles, rows: list[Index], gap: float) -> tuple[list[Loop], list[Door]]:
+def _doors_between(
+    mesh: Triangles, rows: list[Index], gap: float
+) -> tuple[list[_Loop], list[_Door]]:
     """The loops, and the doors that join them along a shortest spanning tree."""
-    loops = [Loop(mesh, row) for row in rows]
+    loops = [_Loop(mesh, row) for row in rows]
     loop_of = np.full(len(mesh.points), -1, dtype=np.int64)
     for number, row in enumerate(rows):
         loop_of[row] = number
@@ -110,9 +107,9 @@ def doors_between(mesh: Triangles, rows: list[Index], gap: float) -> tuple[list[
     return loops, [door for door, _ in candidates]
 
 
-def by_loop(doors: list[Door]) -> dict[int, list[Door]]:
+def _by_loop(doors: list[_Door]) -> dict[int, list[_Door]]:
     """The doors at each loop that has any."""
-    at: dict[int, list[Door]] = {}
+    at: dict[int, list[_Door]] = {}
     for door in doors:
         for loop in door.loops:
             at.setdefault(loop, []).append(door)
@@ -120,8 +117,8 @@ def by_loop(doors: list[Door]) -> dict[int, list[Door]]:
 
 
 def _doors(
-    mesh: Triangles, loops: list[Loop], ways: Ways, loop_of: Index
-) -> list[tuple[Door, list[_Bridge]]]:
+    mesh: Triangles, loops: list[_Loop], ways: Ways, loop_of: Index
+) -> list[tuple[_Door, list[_Bridge]]]:
     """A door of one bridge for each branch of a shortest spanning tree, and other bridges."""
     a, b = mesh.edges.T
     apart = loop_of[a] != loop_of[b]
@@ -148,13 +145,13 @@ def _doors(
             start, end = ways.back_from(int(a[number])), ways.back_from(int(b[number]))
             way = [*start[::-1], *end]
             bridges.append(_Bridge(loops[first].place[way[0]], loops[second].place[way[-1]], way))
-        found.append((Door((first, second), (bridges[0], bridges[0])), bridges))
+        found.append((_Door((first, second), (bridges[0], bridges[0])), bridges))
     return found
 
 
-def _widen(loops: list[Loop], doors: list[tuple[Door, list[_Bridge]]], gap: float) -> None:
+def _widen(loops: list[_Loop], doors: list[tuple[_Door, list[_Bridge]]], gap: float) -> None:
     """Give doors a second bridge where there is room; what they leave out holds no other door."""
-    at = by_loop([door for door, _ in doors])
+    at = _by_loop([door for door, _ in doors])
     for door, bridges in doors:
         own = [loops[number] for number in door.loops]
         around = [
@@ -172,7 +169,7 @@ def _widen(loops: list[Loop], doors: list[tuple[Door, list[_Bridge]]], gap: floa
         for one, other in usable[order[:_MOST_TRIED]].tolist():
             pair = bridges[one], bridges[other]
             if all(
-                is_free(loop, number, loop.arc(*places[[one, other], end].tolist())[1:], others)
+                _is_free(loop, number, loop.arc(*places[[one, other], end].tolist())[1:], others)
                 for end, (number, loop, others) in enumerate(around)
             ):
                 door.bridges = pair
@@ -185,7 +182,7 @@ def _pairs_apart(along: Array, length: float) -> Array:
     return np.minimum(forward, length - forward)
 
 
-def is_free(loop: Loop, number: int, piece: tuple[int, int], doors: list[Door]) -> bool:
+def _is_free(loop: _Loop, number: int, piece: tuple[int, int], doors: list[_Door]) -> bool:
     """Whether no door at a loop needs a place of a piece, or leaves out the piece's beginning."""
     for door in doors:
         _, begin, end = loop.arc(*door.places(number))
@@ -198,8 +195,8 @@ def is_free(loop: Loop, number: int, piece: tuple[int, int], doors: list[Door]) 
     return True
 
 
-def walked(
-    loops: list[Loop], at: dict[int, list[Door]], parts: list[Part | list[int]]
+def _walked(
+    loops: list[_Loop], at: dict[int, list[_Door]], parts: list[_Part | list[int]]
 ) -> list[int]:
     """The path along parts of loops and rows of vertices, with all loops behind doors."""
     path: list[int] = []
@@ -214,19 +211,19 @@ def walked(
 
 
 def _stages(
-    loops: list[Loop],
-    at: dict[int, list[Door]],
+    loops: list[_Loop],
+    at: dict[int, list[_Door]],
     number: int,
     start: int,
     stop: int,
     forward: bool,
-    came: Door | None,
-) -> list[Part | list[int]]:
+    came: _Door | None,
+) -> list[_Part | list[int]]:
     """A loop from one place to another, with everything attached to it."""
     loop = loops[number]
     count = len(loop.row)
     step = 1 if forward else -1
-    leaving: dict[int, list[tuple[int, Door, bool]]] = {}
+    leaving: dict[int, list[tuple[int, _Door, bool]]] = {}
     for door in at.get(number, []):
         if door is came:
             continue
@@ -234,13 +231,11 @@ def _stages(
         if not forward:
             begin, end = end, begin
         leaving.setdefault(begin, []).append((end, door, begin == door.places(number)[0]))
-    stages: list[Part | list[int]] = []
+    stages: list[_Part | list[int]] = []
     row: list[int] = []
     place = start
     # A whole loop comes back to where it began; a part of one ends at its last place.
     steps_left = (stop - start) * step % count or count
-    if came is not None and start == stop:
-        steps_left = count
     while True:
         row.append(loop.row[place])
         for end, door, in_order in leaving.pop(place, []):
@@ -266,7 +261,7 @@ def _stages(
     return stages
 
 
-def _turn_of(loop: Loop, number: int, entry: int, exit_: int, door: Door) -> Part:
+def _turn_of(loop: _Loop, number: int, entry: int, exit_: int, door: _Door) -> _Part:
     """How to walk a loop the long way from where it is entered to where it is left."""
     _, begin, _ = loop.arc(entry, exit_)
     # Forward leads through what the door leaves out if that begins at the entry.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.tool_paths.region import kept_parts
+from cellcolor.tool_paths.region import Segments, kept_parts
 from cellcolor.tool_paths.triangles import Triangles, split_at
 
 _SNAPPED = 0.01  # of the finest side: a vertex so near to the new border counts as on it
@@ -30,23 +29,13 @@ class Overlap:
     onto: Mask
 
     @classmethod
-    def of(
-        cls,
-        surface: LabelledSurface,
-        segment_of: Index,
-        colors: Sequence[int],
-        segment: int,
-        width: float,
-    ) -> Overlap:
+    def of(cls, segments: Segments, segment: int, width: float) -> Overlap:
         """What makes a segment and its neighbors overlap by a width (m) where colors allow it.
 
         It goes half of that beyond its border; all of it where the neighbor's color is not
         available on this side, and so the neighbor cannot come here.
-
-        Args:
-            segment_of: (n,) the segment of each vertex, -1 where it has none.
-            colors: of each segment.
         """
+        surface, segment_of, colors, _ = segments
         own = segment_of == segment
         has_color = np.array([colors[segment] in of for of in surface.vertex_colors], dtype=bool)
         beyond = np.full(len(own), width)

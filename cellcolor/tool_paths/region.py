@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,6 +22,22 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.mesh.dividing import small_areas, small_triangles, unit_everywhere
 from cellcolor.mesh.triangle_mesh import grouped
 from cellcolor.tool_paths.triangles import Triangles
+
+
+class Segments(NamedTuple):
+    """A painted surface.
+
+    Attributes:
+        surface: the surface.
+        segment_of: (n,) the segment of each vertex, -1 where it has none.
+        colors: of each segment.
+        normals: (n, 3) outward at the vertices, of any length, which counts between them.
+    """
+
+    surface: LabelledSurface
+    segment_of: Index
+    colors: Sequence[int]
+    normals: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,17 +57,13 @@ class Region:
     small: Index
 
 
-def regions_of(
-    surface: LabelledSurface,
-    segment_of: Index,
-    colors: Sequence[int],
-    normals: Array,
-    walls: Collection[tuple[int, int]] = (),
-) -> tuple[Region, ...]:
+def regions_of(segments: Segments, walls: Collection[tuple[int, int]] = ()) -> tuple[Region, ...]:
     """The connected parts of all segments, by segment, the largest of each first.
 
-    The arguments are those of :func:`~cellcolor.tool_paths.cover.cover`.
+    Args:
+        walls: mesh edges along which they are cut open, like cracks of whatever segment is there.
     """
+    surface, segment_of, colors, normals = segments
     mesh, vertex_count = surface.mesh, len(surface.vertices)
     color_of = np.array([*colors, -1], dtype=np.int64)[segment_of]
     cracks = [(crack.i, crack.j) for crack in surface.cracks if color_of[crack.i] in crack.colors]

@@ -15,9 +15,7 @@ DEFAULT_PATTERN = "contour"
 """The pattern that is used where none is named."""
 PATTERNS = {
     "contour": "cellcolor.tool_paths.contour:lay_contours",
-    "spiral": "cellcolor.tool_paths.spiral:lay_spiral",
     "back-and-forth": "cellcolor.tool_paths.back_and_forth:lay_back_and_forth",
-    "tree": "cellcolor.tool_paths.tree:lay_tree",
 }
 """This package's own, as ``module:function``."""
 

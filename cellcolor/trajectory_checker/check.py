@@ -16,19 +16,19 @@ from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.trajectory_checker.area import judge_area
 from cellcolor.trajectory_checker.claims import judge_lift_offs
+from cellcolor.trajectory_checker.contact import contact_of
 from cellcolor.trajectory_checker.dense import densified, poses_of
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.file_poses import judge_poses
 from cellcolor.trajectory_checker.fine_mesh import refined
 from cellcolor.trajectory_checker.joint_motion import JointLimits, judge_joints
 from cellcolor.trajectory_checker.on_surface import (
-    branches_of,
     judge_contact,
     judge_cracks,
     judge_dragged,
+    judge_turn,
 )
 from cellcolor.trajectory_checker.tolerances import OFF_SURFACE, Limits
-from cellcolor.trajectory_checker.tool_turn import across_of, judge_turn
 from cellcolor.trajectory_checker.validity import judge_validity
 
 _FINE = 0.25  # spacings; the edges of the triangles that area is measured with
@@ -40,7 +40,6 @@ def check_trajectory(
     trajectory: Trajectory,
     *,
     timed: bool = True,
-    tells: bool = True,
     minimum_lift_offs: int | None = None,
     limits: Limits | None = None,
     deadline: Deadline = NEVER,
@@ -51,8 +50,6 @@ def check_trajectory(
     Args:
         built: the scene and its labelled surface: the area that has a color has to be covered.
         timed: whether its times mean anything; without them velocities are not judged.
-        tells: whether it can say what it leaves out. A table cannot, so it may leave out whatever
-            no branch can reach.
         minimum_lift_offs: what its lift-offs are compared with.
         limits: what it has to cover and may repeat; the usual ones without.
 
@@ -82,27 +79,20 @@ def check_trajectory(
     fine = refined(prepared.surface, fine_edge, deadline)
     if not direction:  # the place tells; the tool, whether it is on this side of a thin sheet
         fine = replace(fine, away=OFF_SURFACE)
-    rows = np.flatnonzero(dense.contact)
-    located = fine.locate(dense.tips[rows], dense.outward[rows], deadline)
-    touching = judge_contact(dense, rows, located, direction, faults)
+    contact = contact_of(prepared, trajectory, dense, fine, deadline)
+    touching = judge_contact(contact, direction, faults)
     judge_dragged(dense, fine, deadline, faults)
-    across, turn = np.zeros((len(rows), 3)), prepared.setup.task.turn
-    if turn is not None:
-        across = across_of(robot, dense.joints[rows], deadline)
-        wanted = -located.normals if direction else dense.axes[rows]
-        judge_turn(turn, dense, rows, wanted, across, faults)
-    branches = branches_of(prepared, dense, rows, across, deadline)
-    judge_cracks(built, dense, rows, located, branches, fine, faults)
+    if prepared.setup.task.turn is not None:
+        judge_turn(prepared.setup.task.turn, contact, direction, faults)
+    judge_cracks(built, contact, fine, faults)
     covered: CoveredArea | None = None
     if motion is None:
         notes.append("The setup has no [motion], so coverage is not judged.")
     else:
         report("area")
         deadline.check()
-        covered = judge_area(
-            built, trajectory, dense, rows, located, branches, touching, fine,
-            motion.spacing_m, motion.overlap_m, limits or Limits(), tells, faults, deadline,
-        )  # fmt: skip
+        on_it = contact.take(touching)
+        covered = judge_area(built, on_it, fine, motion, limits or Limits(), faults, deadline)
         notes += _given_up(built)
     lift_offs, claimed = trajectory.lift_offs, len(trajectory.extra_lift_offs)
     minimum = minimum_lift_offs

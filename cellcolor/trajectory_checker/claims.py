@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.arrays import Array, Mask
+from cellcolor.arrays import Mask
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
+from cellcolor.trajectory_checker.covered import Coverage
 from cellcolor.trajectory_checker.fault_list import FaultList
-from cellcolor.trajectory_checker.fine_mesh import FineMesh
 
 _AREA_SHARE = 1.25  # of the stated area; the planner measures on another mesh than the judge
 
@@ -43,15 +43,7 @@ def judge_lift_offs(trajectory: Trajectory, minimum: int | None, faults: FaultLi
 
 
 def judge_left_out(
-    trajectory: Trajectory,
-    fine: FineMesh,
-    areas: Array,
-    reached: Mask,
-    right: Mask,
-    asked: Mask,
-    failing: Mask,
-    spacing: float,
-    faults: FaultList,
+    trajectory: Trajectory, coverage: Coverage, failing: Mask, faults: FaultList
 ) -> None:
     """Note stated places that could have been covered, and stated areas that are not true.
 
@@ -59,31 +51,26 @@ def judge_left_out(
     fail there: the planner tests other points than the vertices of the fine mesh.
 
     Args:
-        fine: the surface, refined.
-        areas: (n,) reachable area of each vertex of the fine mesh, m².
-        reached: (n,) which vertices are covered.
-        right: (n,) which are rightly left out.
-        asked: (n,) those for which that was tested; the others are closely covered.
         failing: (p,) at which stated places the segment's branches fail.
-        spacing: the setup's, between passes, m.
     """
     if not trajectory.left_out:
         return
-    total, out = float(areas.sum()), float(areas[right].sum())
+    spacing, vertices = coverage.spacing, coverage.fine.vertices
+    total, out = coverage.total, float(coverage.areas[coverage.right].sum())
     stated = sum(part.area_m2 for part in trajectory.left_out)
     if out > _AREA_SHARE * stated + np.pi * spacing**2:
-        text = f"{stated:.6f} m² are stated to be left out, and {out:.6f} m² are"
-        faults.add("claim", text)
+        faults.add("claim", f"{stated:.6f} m² are stated to be left out, and {out:.6f} m² are")
+    wrong = coverage.uncovered
     for part, fails in zip(trajectory.left_out, failing.tolist(), strict=True):
         place = np.array(part.place)
         if not 0 <= part.area_m2 <= total:
             text = f"segment {part.segment}: {part.area_m2:.6f} m² left out of {total:.6f} m²"
             faults.add("claim", text, place=place)
-        apart = np.linalg.norm(fine.vertices - place, axis=1)
+        apart = np.linalg.norm(vertices - place, axis=1)
         at = int(np.argmin(apart))
         if apart[at] > spacing:
             text = f"segment {part.segment}: a stated left-out place is not on the surface"
             faults.add("claim", text, place=place)
-        elif asked[at] and not reached[at] and areas[at] > 0 and not right[at] and not fails:
+        elif wrong[at] and not fails:
             text = f"segment {part.segment}: stated as left out ({part.reason}), but reachable"
             faults.add("claim", text, place=place)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,41 +16,123 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.trajectory_checker.contact import Contact
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
+
+FAR, NEAR = 1.5, 0.75  # spacings; from a pass to what counts as covered, as closely covered
 
 
 @dataclass(frozen=True)
-class Reached:
-    """How near the passes come to the vertices of the fine mesh.
+class Coverage:
+    """What the passes come near to, and what they rightly do not.
 
     Attributes:
-        distance: (n,) to the nearest pass along the surface, m; infinite beyond the limit.
-        nearest: (n,) which configuration in contact is there, -1 beyond the limit.
+        fine: the surface, refined.
+        spacing: the setup's, between passes, m.
+        areas: (n,) how much area with a color each vertex of the fine mesh stands for, m².
+        distance: (n,) to the nearest pass along the surface, m; infinite beyond ``FAR`` spacings.
+        right: (n,) which are rightly left out.
     """
 
+    fine: FineMesh
+    spacing: float
+    areas: Array
     distance: Array
-    nearest: Index
+    right: Mask
+
+    @property
+    def total(self) -> float:
+        """All of the area with a color, m²."""
+        return float(self.areas.sum())
+
+    @property
+    def near(self) -> Mask:
+        """(n,) which are covered."""
+        return np.asarray(self.distance <= FAR * self.spacing)
+
+    @property
+    def missed(self) -> Mask:
+        """(n,) which have area and are not closely covered, whether that is right or not."""
+        return np.asarray((self.areas > 0) & (self.distance > NEAR * self.spacing))
+
+    @property
+    def uncovered(self) -> Mask:
+        """(n,) what no pass comes near to, and is not rightly left out."""
+        return self.missed & ~self.near & ~self.right
+
+    def share(self, of: Mask) -> float:
+        """What share of the area some vertices (n,) have."""
+        return float(self.areas[of].sum() / self.total) if self.total else 0.0
+
+    def patches(self, of: Mask) -> list[tuple[float, Array]]:
+        """The connected parts of some vertices: area in m² and a place (3,), largest first."""
+        rows = np.flatnonzero(of & (self.areas > 0))
+        if not len(rows):
+            return []
+        part = connected_components(self.fine.near[rows][:, rows], directed=False)[1]
+        sizes = np.bincount(part, self.areas[rows])
+        found = []
+        for number in np.argsort(-sizes, kind="stable").tolist():
+            own = rows[part == number]
+            middle = np.average(self.fine.vertices[own], axis=0, weights=self.areas[own])
+            nearest = own[np.argmin(np.linalg.norm(self.fine.vertices[own] - middle, axis=1))]
+            found.append((float(sizes[number]), self.fine.vertices[nearest]))
+        return found
+
+
+def covered_by(
+    built: BuildResult,
+    contact: Contact,
+    fine: FineMesh,
+    spacing: float,
+    stated: Iterable[int],
+    deadline: Deadline,
+) -> Coverage:
+    """What passes cover, and what is rightly left out.
+
+    The trajectory has to state that it leaves something out. Beside a pass of a segment of which
+    that is stated, the configuration of the segment's own branch must not be valid. Far from every
+    pass nothing tells which segment is meant, so there no branch may be valid.
+
+    Args:
+        stated: the segments of which the trajectory states to leave something out.
+    """
+    distance, nearest = reach(fine, contact.at, FAR * spacing)
+    right = np.zeros(len(fine.vertices), dtype=bool)
+    found = Coverage(fine, spacing, reachable_areas(built, fine), distance, right)
+    beside = np.append(contact.segment, -1)[nearest]
+    every = np.arange(len(built.branches))
+    regions = [(beside == one, contact.branches[contact.segment == one]) for one in sorted(stated)]
+    if regions:
+        regions.append((beside < 0, every))
+    for region, own in regions:
+        asked = np.flatnonzero(found.missed & region)
+        places, normals = fine.vertices[asked], fine.normals[asked]
+        right[asked] = _out_of_reach(built.prepared, places, normals, own[own >= 0], deadline)
+    return found
 
 
 def reachable_areas(built: BuildResult, fine: FineMesh) -> Array:
     """How much area (n,) of each vertex of the fine mesh is part of a vertex with a color, m²."""
     colored: Mask = np.any(built.node_color >= 0, axis=1)
-    third = np.where(colored[fine.owner], fine.areas, 0.0) / 3
-    areas = np.zeros(len(fine.vertices))
-    for corner in range(3):
-        np.add.at(areas, fine.triangles[:, corner], third)
-    return areas
+    third = np.where(colored[fine.owner], fine.mesh.area_faces, 0.0) / 3
+    areas = np.bincount(fine.triangles.ravel(), np.repeat(third, 3), len(fine.vertices))
+    return areas.astype(np.float64)
 
 
-def reach(fine: FineMesh, located: Located, farthest: float) -> Reached:
+def reach(fine: FineMesh, located: Located, farthest: float) -> tuple[Array, Index]:
     """Distances along the surface from where the tool has been, up to ``farthest`` (m).
 
     Ways lead from the places of contact to the corners of their small triangles and their
     neighbors, and on from vertex to vertex.
+
+    Returns:
+        Of each vertex of the fine mesh (n,) the distance to the nearest place, infinite beyond the
+        farthest, and which place that is, -1 beyond it.
     """
     n, places = len(fine.vertices), len(located.points)
     if not places:
-        return Reached(np.full(n, np.inf), np.full(n, -1))
+        return np.full(n, np.inf), np.full(n, -1)
     # From each place to all that is near a corner of its triangle, the corners included.
     corners = fine.triangles[located.triangle]
     order = np.repeat(np.arange(places), 3)
@@ -75,41 +158,7 @@ def reach(fine: FineMesh, located: Located, farthest: float) -> Reached:
         graph, indices=sources, min_only=True, limit=farthest, return_predecessors=True
     )
     distance, nearest = distance[:n], nearest[:n].astype(np.int64)
-    return Reached(distance, np.where(np.isfinite(distance), nearest - n, -1))
-
-
-def excused(
-    prepared: PreparedScene,
-    stated: list[int],
-    segment: Index,
-    branches: Index,
-    fine: FineMesh,
-    reached: Reached,
-    missed: Mask,
-    deadline: Deadline,
-) -> Mask:
-    """Which vertices (n,) of the fine mesh are rightly left out.
-
-    The trajectory has to state that it leaves something out. Beside a pass of a segment of which
-    that is stated, the configuration of the segment's own branch must not be valid. Far from every
-    pass nothing tells which segment is meant, so there no branch may be valid.
-
-    Args:
-        stated: the segments of which the trajectory states to leave something out.
-        segment: (c,) of each row in contact; ``branches`` (c,) of these.
-        missed: (n,) the vertices to be asked about.
-    """
-    right = np.zeros(len(fine.vertices), dtype=bool)
-    near = np.append(segment, -1)[reached.nearest]
-    every = np.arange(len(prepared.kinematics.branches))
-    regions = [(near == number, branches[segment == number]) for number in stated]
-    if stated:
-        regions.append((near < 0, every))
-    for region, own in regions:
-        asked = np.flatnonzero(missed & region)
-        places, normals = fine.vertices[asked], fine.normals[asked]
-        right[asked] = _out_of_reach(prepared, places, normals, own[own >= 0], deadline)
-    return right
+    return distance, np.where(np.isfinite(distance), nearest - n, -1)
 
 
 def _out_of_reach(
@@ -129,17 +178,13 @@ def _out_of_reach(
 def failing_places(
     prepared: PreparedScene,
     trajectory: Trajectory,
-    segment: Index,
-    branches: Index,
+    contact: Contact,
     fine: FineMesh,
     deadline: Deadline,
 ) -> Mask:
     """At which of the places that are stated to be left out (p,) no branch of the segment is valid.
 
     A segment that is not driven at all has every branch.
-
-    Args:
-        segment: (c,) of each row in contact; ``branches`` (c,) of these.
     """
     failing = np.zeros(len(trajectory.left_out), dtype=bool)
     if not len(failing):
@@ -150,25 +195,9 @@ def failing_places(
     stated = np.array([part.segment for part in trajectory.left_out])
     every = np.arange(len(prepared.kinematics.branches))
     for number in np.unique(stated).tolist():
-        own = branches[(segment == number) & (branches >= 0)]
+        own = contact.branches[(contact.segment == number) & (contact.branches >= 0)]
         asked = np.flatnonzero(stated == number)
         failing[asked] = _out_of_reach(
             prepared, at.points[asked], at.normals[asked], own if len(own) else every, deadline
         )
     return failing
-
-
-def patches(fine: FineMesh, areas: Array, uncovered: Mask) -> list[tuple[float, Array]]:
-    """The parts of what is not covered: area in m² and a place (3,) in each, largest first."""
-    rows = np.flatnonzero(uncovered & (areas > 0))
-    if not len(rows):
-        return []
-    part = connected_components(fine.near[rows][:, rows], directed=False)[1]
-    sizes = np.bincount(part, areas[rows])
-    found = []
-    for number in np.argsort(-sizes, kind="stable").tolist():
-        own = rows[part == number]
-        middle = np.average(fine.vertices[own], axis=0, weights=areas[own])
-        nearest = own[np.argmin(np.linalg.norm(fine.vertices[own] - middle, axis=1))]
-        found.append((float(sizes[number]), fine.vertices[nearest]))
-    return found

@@ -10,6 +10,7 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import Fault, FaultKind
+from cellcolor.trajectory_checker.dense import Dense
 
 _MOST = 100  # of a kind; the rest is counted
 
@@ -18,13 +19,14 @@ class FaultList:
     """The faults of one trajectory.
 
     Attributes:
+        trajectory: which one.
         counts: how many of each kind were found.
         faults: the first of each kind.
     """
 
     def __init__(self, trajectory: Trajectory, timed: bool) -> None:
         self._times = trajectory.times if timed else None
-        self._joint_names = trajectory.joint_names
+        self.trajectory = trajectory
         self.counts: Counter[FaultKind] = Counter()
         self.faults: list[Fault] = []
 
@@ -34,6 +36,7 @@ class FaultList:
         text: str,
         sample: int | None = None,
         last_sample: int | None = None,
+        *,
         joint: int | None = None,
         reason: str | None = None,
         place: Array | None = None,
@@ -43,7 +46,7 @@ class FaultList:
         if self.counts[kind] > _MOST:
             return
         at = None if sample is None or self._times is None else float(self._times[sample])
-        name = None if joint is None else self._joint_names[joint]
+        name = None if joint is None else self.trajectory.joint_names[joint]
         x_y_z = None if place is None else (float(place[0]), float(place[1]), float(place[2]))
         last_sample = sample if last_sample is None else last_sample
         self.faults.append(Fault(kind, text, sample, last_sample, at, name, reason, x_y_z))
@@ -56,24 +59,46 @@ class FaultList:
         text: Callable[[int], str],
         places: Array,
         joint: int | None = None,
-        reason: str | None = None,
-        sample_of: Index | None = None,
     ) -> None:
-        """Note each stretch of neighboring rows at fault once, with the text of its worst row.
+        """Note each stretch of neighboring samples at fault once, with the text of its worst one.
 
         Args:
             at_fault: (k,).
             excess: (k,) how bad each is.
-            text: what to say of a row.
+            text: what to say of a sample.
             places: (k, 3) in m.
-            sample_of: (k,) the sample of each row, or the one before it; the row's number without.
         """
         for first, after in stretches(at_fault):
             worst = first + int(np.argmax(excess[first:after]))
-            begin, end = first, after - 1
-            if sample_of is not None:
-                begin, end = int(sample_of[first]), int(sample_of[after - 1])
-            self.add(kind, text(worst), begin, end, joint, reason, places[first])
+            self.add(kind, text(worst), first, after - 1, joint=joint, place=places[first])
+
+    def add_rows(
+        self,
+        kind: FaultKind,
+        dense: Dense,
+        rows: Index,
+        excess: Array,
+        most: float,
+        text: Callable[[int], str],
+        reason: str | None = None,
+    ) -> None:
+        """The same for configurations between samples as well, where they exceed what is allowed.
+
+        Args:
+            rows: (c,) the configurations that are judged.
+            excess: (c,) how bad each is.
+            text: what to say of one, by its number among the rows.
+        """
+        number = np.full(len(dense), -1)
+        number[rows] = np.arange(len(rows))
+        at_fault = np.zeros(len(dense), dtype=bool)
+        at_fault[rows] = excess > most
+        for first, after in stretches(at_fault):
+            own = number[first:after]
+            worst = int(own[np.argmax(excess[own])])
+            said = text(worst) + dense.where(rows[worst])
+            begin, end = int(dense.sample[first]), int(dense.sample[after - 1])
+            self.add(kind, said, begin, end, reason=reason, place=dense.tips[first])
 
     def add_joint_stretches(
         self,
@@ -91,7 +116,7 @@ class FaultList:
         for joint in np.flatnonzero(at_fault.any(axis=0)).tolist():
 
             def said(row: int, joint: int = joint) -> str:
-                return f"{self._joint_names[joint]} {text(row, joint)}"
+                return f"{self.trajectory.joint_names[joint]} {text(row, joint)}"
 
             self.add_stretches(kind, at_fault[:, joint], excess[:, joint], said, places, joint)
 

@@ -1,7 +1,7 @@
 """The surface in triangles much smaller than the tool, to measure on and to find points on.
 
-Edges, areas, bisecting and locating are the judge's own on purpose, beside ``cellcolor.mesh``:
-shared with what plans and paints, a mistake in them would be made and approved alike.
+Bisecting, areas, edges and nearest points are trimesh's, not those of ``cellcolor.mesh``: shared
+with what plans and paints, a mistake in them would be made and approved alike.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
+import trimesh
 from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
@@ -22,6 +23,7 @@ from cellcolor.memory import chunks
 _MOST = 2_000_000  # small triangles; some hundred bytes each
 _NEIGHBORS = 8  # how many small triangles are compared at first to find the nearest to a point
 _PAIR = 1_024  # bytes that a point and a small triangle take
+_UNIT = 1e-6  # m; sides much shorter than one unit are nothing to trimesh
 _NEAR = 0.02  # m; for points farther off, a triangle that is nearly the nearest will do
 
 
@@ -52,46 +54,34 @@ class FineMesh:
 
     Attributes:
         surface: the given surface.
-        vertices: (n, 3) in m; those of the given surface come first.
-        triangles: (m, 3).
+        mesh: the small triangles; its vertices (n, 3), m, begin with those of the given surface.
+        normals: (n, 3) the given surface's interpolated unit normals at the vertices.
         face: (m,) which face of the given surface each small triangle is a part of.
-        corners: (m, 3, 3) barycentric coordinates, in that face, of each of its corners.
         away: a triangle that faces away from the tool counts as so much farther, m, while others do
             not; infinite where the tool is held against the normal.
     """
 
     surface: Surface
-    vertices: Array
-    triangles: Index
+    mesh: trimesh.Trimesh
+    normals: Array
     face: Index
-    corners: Array
     away: float = np.inf
 
     @cached_property
-    def areas(self) -> Array:
-        """(m,) in m²."""
-        doubled: Array = np.linalg.norm(self._doubled_normals, axis=1)
-        return doubled / 2
+    def vertices(self) -> Array:
+        """(n, 3), m."""
+        return np.asarray(self.mesh.vertices)
 
-    @property
-    def _doubled_normals(self) -> Array:
-        a, b, c = (self.vertices[self.triangles[:, corner]] for corner in range(3))
-        return np.cross(b - a, c - a)
+    @cached_property
+    def triangles(self) -> Index:
+        """(m, 3) the vertices of each small triangle."""
+        return np.asarray(self.mesh.faces)
 
     @cached_property
     def owner(self) -> Index:
         """(m,) the vertex of the given surface in whose barycentric part its centroid is."""
-        return self._owners(self.face, self.corners.mean(axis=1))
-
-    @cached_property
-    def normals(self) -> Array:
-        """(n, 3) the given surface's interpolated unit normals."""
-        normals = np.empty_like(self.vertices)
-        given = self.surface.normals[self.surface.faces[self.face]]
-        for corner in range(3):
-            mixed = np.einsum("kc,kcd->kd", self.corners[:, corner], given)
-            normals[self.triangles[:, corner]] = mixed
-        return _unit(normals)
+        owner: Index = self._owners(self.face, self._centroids)
+        return owner
 
     @cached_property
     def near(self) -> csr_array:
@@ -100,7 +90,7 @@ class FineMesh:
         A way along these is longer than the shortest one on the surface, by some percent: with
         single edges alone it would be up to a sixth.
         """
-        edges, n = _edges(self.triangles), len(self.vertices)
+        edges, n = self.mesh.edges_unique, len(self.vertices)
         one = csr_array((np.ones(len(edges), dtype=np.int8), tuple(edges.T)), shape=(n, n))
         one = one + one.T
         both = (one + one @ one).tocsr()
@@ -109,19 +99,31 @@ class FineMesh:
         return csr_array((apart, both.indices, both.indptr), shape=(n, n))
 
     @cached_property
+    def _corners(self) -> Array:
+        """(m, 3, 3) where the corners of the small triangles are, m."""
+        corners: Array = self.vertices[self.triangles]
+        return corners
+
+    @cached_property
+    def _centroids(self) -> Array:
+        centroids: Array = self._corners.mean(axis=1)
+        return centroids
+
+    @cached_property
     def _tree(self) -> cKDTree:
-        return cKDTree(self.vertices[self.triangles].mean(axis=1))
+        return cKDTree(self._centroids)
 
     @cached_property
     def _radius(self) -> float:
         """No point of a small triangle is farther from its centroid, m."""
-        corners = self.vertices[self.triangles]
-        apart = np.linalg.norm(corners - corners.mean(axis=1, keepdims=True), axis=2)
+        apart = np.linalg.norm(self._corners - self._centroids[:, None], axis=2)
         return float(apart.max())
 
     @cached_property
     def _facing(self) -> Array:
-        return _unit(self._doubled_normals)
+        """(m, 3) unit normals of the small triangles; zero of those without any area."""
+        facing: Array = _unit(trimesh.triangles.cross(self._corners))
+        return facing
 
     def locate(self, points: Array, outward: Array, deadline: Deadline = NEVER) -> Located:
         """The nearest points of the surface.
@@ -134,18 +136,16 @@ class FineMesh:
             points: (k, 3) in m.
             outward: (k, 3) against the tool's axis.
         """
-        triangle = np.zeros(len(points), dtype=np.int64)
-        weights = np.zeros((len(points), 3))
+        triangle, at = np.zeros(len(points), dtype=np.int64), np.zeros((len(points), 3))
         rows, asked = np.arange(len(points)), min(_NEIGHBORS, len(self.triangles))
         while len(rows):
             unsure = []
             for some in chunks(len(rows), asked * _PAIR):
                 deadline.check()
                 part = rows[some]
-                apart, farthest, found, inside = self._nearest_of(
+                apart, farthest, triangle[part], at[part] = self._nearest_of(
                     points[part], outward[part], asked
                 )
-                triangle[part], weights[part] = found, inside
                 # A triangle that was not asked has its centroid farther off than all that were.
                 open_ = (apart > farthest - self._radius) & (apart < _NEAR)
                 unsure.append(part[open_])
@@ -153,12 +153,10 @@ class FineMesh:
             if asked == len(self.triangles):
                 break
             asked = min(4 * asked, len(self.triangles))
-        at = np.einsum("kc,kcd->kd", weights, self.vertices[self.triangles[triangle]])
-        within = np.einsum("kc,kcd->kd", weights, self.corners[triangle])
         faces = self.face[triangle]
         given = self.surface.normals[self.surface.faces[faces]]
-        normals = _unit(np.einsum("kc,kcd->kd", within, given))
-        return Located(triangle, at, normals, self._owners(faces, within))
+        normals = _unit(np.einsum("kc,kcd->kd", self._shares(faces, at), given))
+        return Located(triangle, at, normals, self._owners(faces, at))
 
     def may_be_near(self, points: Array, distance: float) -> Mask:
         """Which points (k, 3) may be within a distance (m) of the surface; no other one is."""
@@ -169,23 +167,30 @@ class FineMesh:
     def _nearest_of(
         self, points: Array, outward: Array, asked: int
     ) -> tuple[Array, Array, Index, Array]:
-        """For each point (k,): its distance, that of the last centroid tried, triangle, weights."""
+        """For each point (k,): its distance, that of the last centroid tried, triangle, place."""
         far, candidates = self._tree.query(points, k=asked)
         far, candidates = far.reshape(-1, asked), candidates.reshape(-1, asked)
-        corners = self.vertices[self.triangles[candidates]]
-        weights = _closest_weights(points[:, None], corners)
-        nearest = np.einsum("kqc,kqcd->kqd", weights, corners)
+        nearest = trimesh.triangles.closest_point(
+            self._corners[candidates.ravel()] / _UNIT, np.repeat(points, asked, axis=0) / _UNIT
+        )
+        nearest = _UNIT * nearest.reshape(-1, asked, 3)
         apart = np.linalg.norm(nearest - points[:, None], axis=2)
         facing = np.einsum("kqd,kd->kq", self._facing[candidates], outward) > 0
         # Where none of those asked faces this way, the nearest one will do.
         apart = np.where(facing | ~facing.any(axis=1, keepdims=True), apart, apart + self.away)
-        best = np.argmin(apart, axis=1)
-        k = np.arange(len(points))
-        return apart[k, best], far[:, -1], candidates[k, best], weights[k, best]
+        k, best = np.arange(len(points)), np.argmin(apart, axis=1)
+        return apart[k, best], far[:, -1], candidates[k, best], nearest[k, best]
 
-    def _owners(self, faces: Index, within: Array) -> Index:
-        owners: Index = self.surface.faces[faces, np.argmax(within, axis=1)]
-        return owners
+    def _shares(self, faces: Index, places: Array) -> Array:
+        """Barycentric coordinates (k, 3) of places (k, 3) in faces (k,) of the given surface."""
+        corners = self.surface.vertices[self.surface.faces[faces]]
+        with np.errstate(divide="ignore", invalid="ignore"):  # faces without any area
+            shares = trimesh.triangles.points_to_barycentric(corners, places)
+        return np.where(np.isfinite(shares).all(axis=1, keepdims=True), shares, 1 / 3)
+
+    def _owners(self, faces: Index, places: Array) -> Index:
+        nearest = np.argmax(self._shares(faces, places), axis=1)
+        return np.asarray(self.surface.faces[faces, nearest])
 
 
 def refined(surface: Surface, longest: float, deadline: Deadline) -> FineMesh:
@@ -194,105 +199,23 @@ def refined(surface: Surface, longest: float, deadline: Deadline) -> FineMesh:
     Raises:
         TooLarge: there would be millions of small triangles.
     """
-    vertices, triangles = surface.vertices, np.array(surface.faces, dtype=np.int64)
-    face = np.arange(len(triangles))
-    corners = np.tile(np.eye(3), (len(triangles), 1, 1))
-    while True:
+    sides = np.diff(surface.vertices[surface.faces[:, [0, 1, 2, 0]]], axis=1)
+    rounds = np.log2(max(1.0, float(np.linalg.norm(sides, axis=2).max()) / longest))
+    # Normals are interpolated like points. Edges are shortened to half and half again, so that what
+    # would not fit into memory is seen early.
+    rows, faces = np.hstack([surface.vertices, surface.normals]), surface.faces
+    face = np.arange(len(faces))
+    for halvings in range(int(rounds), -1, -1):
         deadline.check()
-        edges = _edges(triangles)
-        lengths = np.linalg.norm(vertices[edges[:, 0]] - vertices[edges[:, 1]], axis=1)
-        split = edges[lengths > longest]
-        if not len(split):
-            return FineMesh(surface, vertices, triangles, face, corners)
-        if len(triangles) + 2 * len(split) > _MOST:
+        rows, faces, part = trimesh.remesh.subdivide_to_size(
+            rows, faces, longest * 2.0**halvings, return_index=True
+        )
+        face = face[part]
+        if len(faces) > _MOST:
             message = f"more than {_MOST} triangles with edges of {1000 * longest:.3g} mm"
             raise TooLarge(f"the surface is too large to be judged at this spacing: {message}")
-        middle = np.arange(len(vertices), len(vertices) + len(split))
-        vertices = np.concatenate([vertices, vertices[split].mean(axis=1)])
-        triangles, face, corners = _bisected(triangles, face, corners, split, middle)
-
-
-def _edges(triangles: Index) -> Index:
-    """Every edge (k, 2) once, smaller vertex first, in lexicographic order."""
-    size = int(triangles.max()) + 1
-    one, other = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    # One number a side sorts many times faster than pairs do.
-    keys = np.sort(np.minimum(one, other) * size + np.maximum(one, other))
-    return np.column_stack(np.divmod(keys[np.diff(keys, prepend=-1) > 0], size))
-
-
-def _bisected(
-    triangles: Index, face: Index, corners: Array, split: Index, middle: Index
-) -> tuple[Index, Index, Array]:
-    """Triangles with the middles of some of their edges as new corners.
-
-    Args:
-        split: (s, 2) the edges, smaller vertex first, in lexicographic order.
-        middle: (s,) the vertex in the middle of each.
-    """
-    size = int(triangles.max()) + 1
-    keys = split[:, 0] * size + split[:, 1]
-    sides = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2), axis=2)
-    wanted = sides[..., 0] * size + sides[..., 1]
-    place = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
-    is_split = keys[place] == wanted
-    # Turned so that split edges come first: edge c leads from corner c to corner c + 1.
-    count = is_split.sum(axis=1)
-    turn = np.where(count == 1, np.argmax(is_split, axis=1), 0)
-    turn = np.where(count == 2, (np.argmin(is_split, axis=1) + 1) % 3, turn)
-    order = (turn[:, None] + np.arange(3)) % 3
-    row = np.arange(len(triangles))[:, None]
-    mids = middle[place][row, order]
-    at, own = triangles[row, order], corners[row, order]
-    half = (own + np.roll(own, -1, axis=1)) / 2
-    names = np.concatenate([at, mids], axis=1)
-    places = np.concatenate([own, half], axis=1)
-    # Corners 0 1 2, middles 3 (of 0-1), 4 (of 1-2), 5 (of 2-0).
-    patterns = {
-        0: [(0, 1, 2)],
-        1: [(0, 3, 2), (3, 1, 2)],
-        2: [(3, 1, 4), (0, 3, 4), (0, 4, 2)],
-        3: [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)],
-    }
-    parts = [
-        (names[rows][:, list(three)], face[rows], places[rows][:, list(three)])
-        for number, pattern in patterns.items()
-        for rows in [np.flatnonzero(count == number)]
-        for three in pattern
-    ]
-    new_triangles, new_face, new_corners = zip(*parts, strict=True)
-    return np.concatenate(new_triangles), np.concatenate(new_face), np.concatenate(new_corners)
-
-
-def _closest_weights(points: Array, corners: Array) -> Array:
-    """Barycentric coordinates (..., 3) of the nearest points of triangles (..., 3, 3)."""
-    a, b, c = (corners[..., k, :] for k in range(3))
-    ab, ac, ap = b - a, c - a, points - a
-    d00, d01, d11 = _dot(ab, ab), _dot(ab, ac), _dot(ac, ac)
-    d20, d21 = _dot(ap, ab), _dot(ap, ac)
-    scale = d00 * d11 - d01 * d01
-    safe = np.where(scale > 0, scale, 1.0)
-    v, w = (d11 * d20 - d01 * d21) / safe, (d00 * d21 - d01 * d20) / safe
-    weights = np.stack([1 - v - w, v, w], axis=-1)
-    outside = (weights < 0).any(axis=-1) | (scale <= 0)
-    # Outside, the nearest point is on one of the edges.
-    best = np.full(outside.shape, np.inf)
-    for first, second in ((0, 1), (1, 2), (2, 0)):
-        start, along = corners[..., first, :], corners[..., second, :] - corners[..., first, :]
-        squared = _dot(along, along)
-        way = _dot(points - start, along) / np.where(squared > 0, squared, 1.0)
-        way = np.clip(way, 0.0, 1.0)
-        apart = points - start - way[..., None] * along
-        closer = outside & (_dot(apart, apart) < best)
-        best = np.where(closer, _dot(apart, apart), best)
-        on_edge = np.zeros_like(weights)
-        on_edge[..., first], on_edge[..., second] = 1 - way, way
-        weights = np.where(closer[..., None], on_edge, weights)
-    return weights
-
-
-def _dot(one: Array, other: Array) -> Array:
-    return np.asarray((one * other).sum(axis=-1))
+    mesh = trimesh.Trimesh(rows[:, :3], faces, process=False, validate=False)
+    return FineMesh(surface, mesh, _unit(rows[:, 3:]), face)
 
 
 def _unit(vectors: Array) -> Array:

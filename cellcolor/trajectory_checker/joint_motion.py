@@ -154,7 +154,7 @@ def _note_jumps(
     for sample, joint in np.argwhere(jumps).tolist():
         by = f"{steps[sample, joint]:.4g} {units[joint]}"
         text = f"{names[joint]} moves by {by} to the next sample"
-        faults.add("jump", text, sample, sample + 1, joint, place=tips[sample])
+        faults.add("jump", text, sample, sample + 1, joint=joint, place=tips[sample])
 
 
 def _judge_tool_speed(

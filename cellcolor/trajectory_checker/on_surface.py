@@ -4,59 +4,68 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Index, Mask
 from cellcolor.data.trajectory_verdict import FaultKind
 from cellcolor.deadline import Deadline
-from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.build import BuildResult
-from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.memory import chunks
-from cellcolor.trajectory_checker.dense import Dense, angles, joint_steps
+from cellcolor.frontend.setup import Turn
+from cellcolor.trajectory_checker.contact import Contact
+from cellcolor.trajectory_checker.dense import Dense, angles
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
-from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
-from cellcolor.trajectory_checker.tolerances import BRANCH, LEAVING, OFF_SURFACE, TILT
+from cellcolor.trajectory_checker.fine_mesh import FineMesh
+from cellcolor.trajectory_checker.tolerances import LEAVING, OFF_SURFACE, TILT, TURN
 from cellcolor.trajectory_checker.tool_turn import turns_off
 
-_SAME = 1e-6  # rad, m; solutions so near to each other are one
 _PARTS = 16  # a step that seems to cross a crack is tested in so many parts: it may pass its end
 
 
-def judge_contact(
-    dense: Dense, rows: Index, located: Located, direction: bool, faults: FaultList
-) -> Mask:
+def judge_contact(contact: Contact, direction: bool, faults: FaultList) -> Mask:
     """Note where the tip is off the surface or the tool is tilted.
 
     Args:
-        dense: the trajectory with all configurations that are judged.
-        rows: (c,) its rows in contact.
-        located: the nearest points of the surface to these.
         direction: whether the task holds the tool against the normal.
 
     Returns:
         (c,) whether the tip is on the surface.
     """
-    apart = np.linalg.norm(dense.tips[rows] - located.points, axis=1)
-    _note(
-        "off surface",
-        dense,
-        rows,
-        1000 * apart,
-        1000 * OFF_SURFACE,
-        "the tip is {:.4g} mm off the surface, allowed: {:.4g}",
-        faults,
-    )
+    dense, rows = contact.dense, contact.rows
+    apart = np.linalg.norm(contact.tips - contact.at.points, axis=1)
+
+    def off(row: int) -> str:
+        most = f"{1000 * OFF_SURFACE:.4g}"
+        return f"the tip is {1000 * apart[row]:.4g} mm off the surface, allowed: {most}"
+
+    faults.add_rows("off surface", dense, rows, apart, OFF_SURFACE, off)
     if direction:
-        tilt = angles(dense.outward[rows], located.normals)
-        _note(
-            "tilted",
-            dense,
-            rows,
-            np.degrees(tilt),
-            float(np.degrees(TILT)),
-            "the tool is {:.4g} degrees off the surface's normal, allowed: {:.4g}",
-            faults,
-        )
+        tilt = angles(dense.outward[rows], contact.at.normals)
+
+        def tilted(row: int) -> str:
+            by, most = np.degrees(tilt[row]), np.degrees(TILT)
+            return f"the tool is {by:.4g} degrees off the surface's normal, allowed: {most:.4g}"
+
+        faults.add_rows("tilted", dense, rows, tilt, TILT, tilted)
     return np.asarray(apart <= OFF_SURFACE)
+
+
+def judge_turn(turn: Turn, contact: Contact, direction: bool, faults: FaultList) -> None:
+    """Note where the tool has none of the turns that the setup gives.
+
+    Args:
+        direction: whether the task holds the tool against the normal.
+    """
+    wanted = -contact.at.normals if direction else contact.dense.axes[contact.rows]
+    off = turns_off(turn, contact.tips, wanted, contact.across).min(axis=1, initial=np.inf)
+
+    def text(row: int) -> str:
+        if np.isinf(off[row]):
+            return "the setup's rule for the tool's turn is undefined here"
+        by, most = np.degrees(off[row]), np.degrees(TURN)
+        return (
+            f"the tool is {by:.4g} degrees off the turn that the setup gives it, "
+            f"allowed: {most:.4g}"
+        )
+
+    faults.add_rows("turned", contact.dense, contact.rows, off, TURN, text)
 
 
 def judge_dragged(dense: Dense, fine: FineMesh, deadline: Deadline, faults: FaultList) -> None:
@@ -91,135 +100,37 @@ def judge_dragged(dense: Dense, fine: FineMesh, deadline: Deadline, faults: Faul
         )  # fmt: skip
 
 
-def _note(
-    kind: FaultKind,
-    dense: Dense,
-    rows: Index,
-    measure: Array,
-    most: float,
-    text: str,
-    faults: FaultList,
-) -> None:
-    excess = np.zeros(len(dense))
-    excess[rows] = measure
-    faults.add_stretches(
-        kind,
-        excess > most,
-        excess,
-        lambda k: text.format(excess[k], most) + dense.where(k),
-        dense.tips,
-        sample_of=dense.sample,
-    )
-
-
-def branches_of(
-    prepared: PreparedScene, dense: Dense, rows: Index, across: Array, deadline: Deadline
-) -> Index:
-    """The branch (c,) of each configuration, -1 if it is near no solution of a known branch.
-
-    Joints are compared modulo full circles. A last joint that only turns the tool is ignored. Where
-    branches of an arm without names have one configuration in common, as off the vertices at which
-    they are told apart, the stroke stays in one of them as long as it can.
-
-    Args:
-        dense: the trajectory with all configurations that are judged.
-        rows: (c,) the configurations.
-        across: (c, 3) the tool's x axis, which matters if the setup gives the tool's turn.
-    """
-    found, compared = np.full(len(rows), -1), prepared.robot.task.joints
-    several: dict[int, set[int]] = {}  # of rows with more than one branch
-    for part in chunks(len(rows), 64 * compared * prepared.arm.slots):
-        own = rows[part]
-        solutions, before = _solutions(
-            prepared, dense.tips[own], dense.axes[own], across[part], deadline
-        )
-        off = joint_steps(
-            prepared.robot.slides[:compared],
-            dense.joints[own, None, :compared],
-            solutions[..., :compared],
-        ).max(axis=2)
-        off = np.where(np.isnan(off), np.inf, off)
-        nearest = np.argmin(off, axis=1)
-        least = off[np.arange(len(own)), nearest]
-        known = least <= BRANCH
-        found[part][known] = (before + nearest)[known]
-        same = known[:, None] & (off <= least[:, None] + _SAME)
-        for row in np.flatnonzero(same.sum(axis=1) > 1).tolist():
-            several[part.start + row] = set((before[row] + np.flatnonzero(same[row])).tolist())
-    return _steady(found, several, dense.stroke[rows]) if several else found
-
-
-def _steady(found: Index, several: dict[int, set[int]], stroke: Index) -> Index:
-    """The branch of each row of strokes, with as few changes as rows in several branches allow."""
-    chosen, begin, common = found.copy(), 0, set[int]()
-    for row in range(len(found) + 1):
-        own = several.get(row, set(found[row : row + 1].tolist()))
-        if row > begin and row < len(found) and stroke[row] == stroke[begin] and common & own:
-            common &= own
-            continue
-        if row > begin:
-            chosen[begin:row] = found[begin] if found[begin] in common else min(common)
-        begin, common = row, set(own)
-    return chosen
-
-
-def _solutions(
-    prepared: PreparedScene, tips: Array, axes: Array, across: Array, deadline: Deadline
-) -> tuple[Array, Index]:
-    """All solutions (k, branches, joints) of poses, and the number (k,) of their first branch.
-
-    If the setup gives turns of the tool, branches are numbered turn by turn. Then a pose is solved
-    with its own turn, and its branches are those of the nearest given turn.
-    """
-    kinematics = prepared.kinematics
-    if not isinstance(kinematics, TurnedKinematics):
-        return prepared.arm.inverse(tips, axes, deadline), np.zeros(len(tips), dtype=np.int64)
-    number = np.argmin(turns_off(kinematics.turn, tips, axes, across), axis=1)
-    return kinematics.solve_pose(tips, axes, across), number * len(kinematics.own.branches)
-
-
-def judge_cracks(
-    built: BuildResult,
-    dense: Dense,
-    rows: Index,
-    located: Located,
-    branches: Index,
-    fine: FineMesh,
-    faults: FaultList,
-) -> None:
+def judge_cracks(built: BuildResult, contact: Contact, fine: FineMesh, faults: FaultList) -> None:
     """Note where the branch changes in contact, and where a crack of the color is crossed."""
-    together = dense.stroke[rows[1:]] == dense.stroke[rows[:-1]]
-    known = together & (branches[1:] >= 0) & (branches[:-1] >= 0)
+    branches, at, names = contact.branches, contact.at, built.branches
+
+    def note(kind: FaultKind, text: str, step: int) -> None:
+        sample, after = (int(contact.sample[row]) for row in (step, step + 1))
+        faults.add(kind, text, sample, after, place=contact.tips[step])
+
+    known = contact.together & (branches[1:] >= 0) & (branches[:-1] >= 0)
     changed = known & (branches[1:] != branches[:-1])
-    names = built.branches
     for step in np.flatnonzero(changed).tolist():
-        k = int(rows[step])
         text = f"changes from {names[branches[step]]!r} to {names[branches[step + 1]]!r}"
-        after = int(dense.sample[rows[step + 1]])
-        faults.add("branch", text, int(dense.sample[k]), after, place=dense.tips[k])
+        note("branch", text, step)
     torn = _torn(built)
     if not len(torn):
         return
     steps = np.flatnonzero(known & ~changed)
-    steps = steps[_crosses(located.owner[steps], located.owner[steps + 1], branches[steps], torn)]
+    steps = steps[_crosses(at.owner[steps], at.owner[steps + 1], branches[steps], torn)]
     if not len(steps):
         return
     share = np.linspace(0.0, 1.0, _PARTS + 1)[None, :, None]
-    start, end = located.points[steps, None], located.points[steps + 1, None]
+    start, end = at.points[steps, None], at.points[steps + 1, None]
     points = (start + share * (end - start)).reshape(-1, 3)
-    outward = np.repeat(dense.outward[rows[steps]], _PARTS + 1, axis=0)
+    outward = np.repeat(contact.dense.outward[contact.rows[steps]], _PARTS + 1, axis=0)
     owner = fine.locate(points, outward).owner.reshape(len(steps), -1)
     of = np.repeat(branches[steps][:, None], _PARTS, axis=1)
-    for row, step in enumerate(steps.tolist()):
-        crossing = _crosses(owner[row, :-1], owner[row, 1:], of[row], torn)
-        if not crossing.any():
-            continue
-        part = int(np.argmax(crossing))
-        u, v = int(owner[row, part]), int(owner[row, part + 1])
-        k = int(rows[step])
-        text = f"crosses the crack between vertices {u} and {v} in {names[branches[step]]!r}"
-        after = int(dense.sample[rows[step + 1]])
-        faults.add("crack", text, int(dense.sample[k]), after, place=dense.tips[k])
+    crossing = _crosses(owner[:, :-1], owner[:, 1:], of, torn)
+    for row in np.flatnonzero(crossing.any(axis=1)).tolist():
+        u, v = owner[row, (part := int(np.argmax(crossing[row]))) : part + 2].tolist()
+        name = names[branches[steps[row]]]
+        note("crack", f"crosses the crack between vertices {u} and {v} in {name!r}", steps[row])
 
 
 def _torn(built: BuildResult) -> Index:

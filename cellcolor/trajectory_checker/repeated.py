@@ -12,8 +12,8 @@ from scipy.spatial import cKDTree
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.errors import TooLarge
 from cellcolor.memory import batches, check_memory
-from cellcolor.trajectory_checker.dense import Dense
-from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
+from cellcolor.trajectory_checker.contact import Contact
+from cellcolor.trajectory_checker.fine_mesh import FineMesh
 
 _PAIR = 192  # bytes that two places take where they are found
 _TOGETHER = 20_000  # places that have at most
@@ -81,28 +81,21 @@ class Strips:
         return np.asarray(np.where(outside, total, visits.max(axis=1).toarray().ravel()))
 
 
-def passes(
-    dense: Dense, rows: Index, segment: Index, located: Located, fine: FineMesh, within: float
-) -> csr_array:
+def passes(contact: Contact, fine: FineMesh, within: float) -> csr_array:
     """How often each segment's tool comes within a distance (m) of the vertices of the fine mesh.
 
     Coming back after less than that distance is the same pass. What faces another way, as the back
     of a sheet does, is not come by.
 
-    Args:
-        segment: (c,) of each row, from 0 on.
-
     Returns:
         (n, segments), without entries where a segment does not come.
     """
-    ways = _ways(dense, rows)
-    tree = cKDTree(fine.vertices)
-    vertices, places = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
-    for vertex, place in _near(tree, located.points, within):
-        facing = np.einsum("ij,ij->i", fine.normals[vertex], located.normals[place]) > 0
-        vertices.append(vertex[facing])
-        places.append(place[facing])
-    vertex, place = np.concatenate(vertices), np.concatenate(places)
+    ways, at, segment = _ways(contact), contact.at, contact.segment
+    found = [np.zeros((2, 0), dtype=np.int64)]
+    for vertex, place in _near(cKDTree(fine.vertices), at.points, within):
+        facing = np.einsum("ij,ij->i", fine.normals[vertex], at.normals[place]) > 0
+        found.append(np.stack([vertex[facing], place[facing]]))
+    vertex, place = np.concatenate(found, axis=1)
     order = np.lexsort((place, vertex))
     vertex, place = vertex[order], place[order]
     begins = np.ones(len(vertex), dtype=bool)
@@ -113,7 +106,7 @@ def passes(
 
 
 def repeated_stretches(
-    dense: Dense, rows: Index, located: Located, strip: Index, within: float, apart: float
+    contact: Contact, strip: Index, within: float, apart: float
 ) -> list[Repeated]:
     """The stretches that run along an earlier pass, either way.
 
@@ -122,12 +115,11 @@ def repeated_stretches(
         within: how near the earlier pass is, m.
         apart: so far, in m along the path, two places have to be to belong to two passes.
     """
-    if len(rows) < 2:
+    if len(contact) < 2:
         return []
-    ways = _ways(dense, rows)
-    points, normals = located.points, located.normals
-    tangents = _tangents(points, dense.stroke[rows])
-    earlier = np.full(len(rows), -1)
+    ways, points, normals = _ways(contact), contact.at.points, contact.at.normals
+    tangents = _tangents(points, contact.stroke)
+    earlier = np.full(len(contact), -1)
     for one, other in _near(cKDTree(points), points, within):
         close = (
             (one < other)
@@ -176,12 +168,10 @@ def _near(tree: cKDTree, points: Array, within: float) -> Iterator[tuple[Index, 
         yield np.concatenate(lists), np.repeat(np.arange(part.start, part.stop), counts[part])
 
 
-def _ways(dense: Dense, rows: Index) -> Array:
+def _ways(contact: Contact) -> Array:
     """How far (c,) the tool has come in contact, m; far apart from stroke to stroke."""
-    steps = np.linalg.norm(np.diff(dense.tips[rows], axis=0), axis=1)
-    same = dense.stroke[rows[1:]] == dense.stroke[rows[:-1]]
-    far = 1.0 + float(steps.sum())
-    return np.concatenate([[0.0], np.cumsum(np.where(same, steps, far))])
+    far = 1.0 + float(contact.steps.sum())
+    return np.append(0.0, np.cumsum(np.where(contact.together, contact.steps, far)))
 
 
 def _tangents(points: Array, stroke: Index) -> Array:

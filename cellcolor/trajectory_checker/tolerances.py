@@ -37,9 +37,12 @@ class Limits:
         least_closely_covered_share: the same for 0.75 times the spacing.
         most_mean_visits: mean number of passes within half the spacing.
         longest_repeated_spacings: how long a stretch may run along an earlier pass, in spacings.
+        silent: whether it cannot say what it leaves out, as a table cannot; then it may leave out
+            whatever no branch reaches.
     """
 
     least_covered_share: float = 0.99
     least_closely_covered_share: float = 0.97
     most_mean_visits: float = 1.3
     longest_repeated_spacings: float = 3.0
+    silent: bool = False

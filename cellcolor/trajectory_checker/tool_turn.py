@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.kinematics import angle_about, bytes_of_poses, forward, tool_across
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.turned import turn_at
 from cellcolor.frontend.setup import Turn
 from cellcolor.memory import chunks
-from cellcolor.trajectory_checker.dense import Dense
-from cellcolor.trajectory_checker.fault_list import FaultList
-from cellcolor.trajectory_checker.tolerances import TURN
 
 
 def across_of(robot: Robot, joints: Array, deadline: Deadline = NEVER) -> Array:
@@ -40,29 +37,3 @@ def turns_off(turn: Turn, points: Array, directions: Array, across: Array) -> Ar
     off = angle[:, None] - np.radians(turn.degrees)
     off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi)
     return np.asarray(np.where(np.isnan(off), np.inf, off))
-
-
-def judge_turn(
-    turn: Turn, dense: Dense, rows: Index, directions: Array, across: Array, faults: FaultList
-) -> None:
-    """Note where the tool has none of the turns that the setup gives.
-
-    Args:
-        rows: (c,) those of ``dense`` in contact.
-        directions: (c, 3) unit vectors that the tool's z axis should have there.
-        across: (c, 3) the tool's x axis there.
-    """
-    excess = np.zeros(len(dense))
-    off = turns_off(turn, dense.tips[rows], directions, across).min(axis=1, initial=np.inf)
-    excess[rows] = np.degrees(off)
-    most = float(np.degrees(TURN))
-
-    def text(row: int) -> str:
-        if np.isinf(excess[row]):
-            return f"the setup's rule for the tool's turn is undefined here{dense.where(row)}"
-        return (
-            f"the tool is {excess[row]:.4g} degrees off the turn that the setup gives it, "
-            f"allowed: {most:.4g}{dense.where(row)}"
-        )
-
-    faults.add_stretches("turned", excess > most, excess, text, dense.tips, sample_of=dense.sample)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,20 +84,11 @@ def _note(
     names: tuple[str, ...],
     faults: FaultList,
 ) -> None:
-    codes = np.full(len(dense), VALID, dtype=np.uint8)
-    codes[rows] = reasons
     for code in sorted(set(reasons.tolist()) - {VALID}):
-        faults.add_stretches(
-            "invalid",
-            codes == code,
-            (codes == code).astype(np.float64),
-            partial(_text, dense, names[code]),
-            dense.tips,
-            reason=names[code],
-            sample_of=dense.sample,
-        )
+        name, failing = names[code], (reasons == code).astype(np.float64)
 
+        def text(row: int, name: str = name) -> str:
+            doing = "in contact" if dense.contact[rows[row]] else "on the way"
+            return f"fails the test {name!r} {doing}"
 
-def _text(dense: Dense, reason: str, row: int) -> str:
-    doing = "in contact" if dense.contact[row] else "on the way"
-    return f"fails the test {reason!r} {doing}{dense.where(row)}"
+        faults.add_rows("invalid", dense, rows, failing, 0.0, text, name)

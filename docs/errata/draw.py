@@ -1,4 +1,4 @@
-"""Draw the figures of docs/errata.md from the instance library: ``python docs/errata/draw.py``.
+"""Draw the figures of docs/paper.md from the instance library: ``python docs/errata/draw.py``.
 
 Each point of a mesh is a square. The numbers in the titles are counted by the checker on what is
 drawn, and compared with what the instances say is known.

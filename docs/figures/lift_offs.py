@@ -1,8 +1,7 @@
 """Draw what choosing the path first costs on the wok: ``docs/figures/lift_offs.py [FOLDER]``.
 
-Left, seen from above: the raster path whose number of lift-offs is the median of 18 directions,
-each stroke in the color of its branch, and its lift-offs. Right: a painting with the proven
-minimum.
+Left, seen from above: the raster path whose number of lift-offs is the median of 18 directions, and
+its lift-offs. Right: a painting with the proved minimum.
 """
 
 from __future__ import annotations
@@ -17,24 +16,20 @@ from matplotlib.figure import Figure
 
 import cellcolor
 from cellcolor.arrays import Array, Index
-from cellcolor.frontend import Scene, build_surface
-from cellcolor.frontend.prepared import prepare
+from cellcolor.frontend import build_surface
 from cellcolor.pictures.palette import AREAS, FAINT, INK, LINES, WARNING
 
 TOP = Path(__file__).resolve().parents[2]
 sys.path.append(str(TOP / "benchmarks"))
-from path_first import DIRECTIONS, Counted, counted  # noqa: E402
+from path_first import DIRECTIONS, counted  # noqa: E402
 
 
 def main(folder: Path) -> None:
     """Draw the wok."""
-    scene = Scene.read(TOP / "instances" / "scenes" / "wok.toml")
-    assert scene.setup.motion is not None
-    built = build_surface(scene)
-    prepared = prepare(scene.with_setup(scene.setup.varied(motion=None)))
+    built = build_surface(TOP / "instances" / "scenes" / "wok.toml")
     angles = (np.arange(DIRECTIONS) * np.pi / DIRECTIONS).tolist()
-    each = [counted(prepared, built, angle, scene.setup.motion.spacing_m) for angle in angles]
-    each.sort(key=lambda one: one.judged)
+    each = sorted((counted(built, angle) for angle in angles), key=lambda one: len(one[2]))
+    path, reached, changes = each[len(each) // 2]
     result = cellcolor.solve(built)
     painted = cellcolor.paint(built, result)
     figure = Figure(figsize=(10, 5), dpi=100)
@@ -45,10 +40,10 @@ def main(folder: Path) -> None:
     nobody = np.full(len(built.surface.vertices), -1)
     _areas(left, built.surface.vertices, built.surface.faces, nobody)
     _areas(right, painted.surface.vertices, painted.surface.faces, painted.segment_of)
-    _strokes(left, each[len(each) // 2])
-    left.set_title(f"a raster path: {each[len(each) // 2].judged} lift-offs", color=INK)
+    _strokes(left, path.points[reached], changes)
+    left.set_title(f"a raster path: {len(changes)} lift-offs", color=INK)
     lift_offs = result.solution.lift_offs
-    right.set_title(f"the proven minimum: {lift_offs} lift-off", color=INK)
+    right.set_title(f"the proved minimum: {lift_offs} lift-off", color=INK)
     figure.tight_layout()
     figure.savefig(folder / "path-first.png")
 
@@ -66,14 +61,11 @@ def _areas(axes: Axes, vertices: Array, faces: Index, owner: Index) -> None:
     axes.autoscale_view()
 
 
-def _strokes(axes: Axes, one: Counted) -> None:
-    names: dict[int, str] = {}
-    for stroke in one.strokes:
-        color = names.setdefault(stroke.branch, LINES[len(names) % len(LINES)])
-        points = one.path.points[stroke.first : stroke.after]
-        axes.plot(*points[:, :2].T, color=color, linewidth=1.0)
-    for number, stroke in enumerate(one.strokes[1:], 1):
-        x, y = one.path.points[stroke.first, :2]
+def _strokes(axes: Axes, points: Array, changes: Index) -> None:
+    """The path (n, 3), in another color from each change on."""
+    for number, stroke in enumerate(np.split(points, changes)):
+        axes.plot(*stroke[:, :2].T, color=LINES[number % len(LINES)], linewidth=1.0)
+    for number, (x, y, _) in enumerate(points[changes], 1):
         axes.plot(x, y, "o", color=WARNING, markersize=7)
         axes.annotate(f" {number}", (x, y), color=WARNING, fontsize=11, weight="bold")
 

@@ -18,6 +18,7 @@ from motions import planned_scene, ring_scene
 from cellcolor.motion.following import follow
 from cellcolor.motion.samples import sampled
 from cellcolor.tool_paths.cover import cover
+from cellcolor.tool_paths.region import Segments
 
 LIMIT = 200.0  # degrees
 
@@ -29,10 +30,7 @@ def main(folder: Path) -> None:
     assert motion is not None
     color = max(color for color in ring.painted.plan.vertex_colors if color is not None)
     covered = cover(
-        ring.painted.surface,
-        ring.painted.segment_of,
-        [color],
-        ring.normals,
+        Segments(ring.painted.surface, ring.painted.segment_of, [color], ring.normals),
         spacing_m=motion.spacing_m,
         tool_radius_m=motion.tool_radius_m,
     )

@@ -29,17 +29,21 @@ def test_the_paths_are_written_and_read(
 ) -> None:
     output = tmp_path / "paths.json"
     capsys.readouterr()
-    assert run("cover", *painted, *LENGTHS, "--pattern", "tree", "-o", output) == 0
+    assert run("cover", *painted, *LENGTHS, "--pattern", "back-and-forth", "-o", output) == 0
     said = capsys.readouterr().out
     assert said.startswith(f"wrote {output}: ") and "segment 0:" in said
     paths = cellcolor.read(output)
     surface = cellcolor.read(painted[0])
-    assert paths.surface_sha256 == surface.sha256 and paths.pattern == "tree"
+    assert paths.surface_sha256 == surface.sha256 and paths.pattern == "back-and-forth"
     # The same in Python, from files and from values.
-    again = cellcolor.cover(*painted, pattern="tree", spacing_m=0.5, tool_radius_m=0.5)
+    again = cellcolor.cover(*painted, pattern="back-and-forth", spacing_m=0.5, tool_radius_m=0.5)
     assert again.paths == paths
     values = cellcolor.cover(
-        surface, cellcolor.read(painted[1]), pattern="tree", spacing_m=0.5, tool_radius_m=0.5
+        surface,
+        cellcolor.read(painted[1]),
+        pattern="back-and-forth",
+        spacing_m=0.5,
+        tool_radius_m=0.5,
     )
     assert values.paths == paths
 

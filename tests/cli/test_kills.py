@@ -1,30 +1,18 @@
-"""Commands killed at random moments and at chosen ones: each file whole, all or none, no traces.
-
-``benchmarks/kills.py`` does the same a hundred times each and prints a table.
-"""
+"""Commands killed at random moments and at chosen ones: each file whole, all or none, no traces."""
 
 from __future__ import annotations
 
-import importlib.util
 import signal
 import subprocess
 import sys
 from pathlib import Path
-from types import ModuleType
 
+import kills
 import pytest
 from commands import run
 from library import INSTANCES, PAPER
 
 pytestmark = pytest.mark.second
-
-SPEC = importlib.util.spec_from_file_location(
-    "kills", Path(__file__).parents[2] / "benchmarks" / "kills.py"
-)
-assert SPEC is not None and SPEC.loader is not None
-kills: ModuleType = importlib.util.module_from_spec(SPEC)
-sys.modules["kills"] = kills  # its dataclasses look themselves up
-SPEC.loader.exec_module(kills)
 
 AT_RENAME = """
 import os, signal, sys

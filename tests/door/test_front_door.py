@@ -57,8 +57,6 @@ PUBLIC = [
     "Formulation",
     "PlannedScene",
     "ProvenRange",
-    "RefinedStep",
-    "Refinement",
     "RelaxedMinimum",
     "Result",
     "SetUp",

@@ -38,7 +38,6 @@ def refusal(scene: Scene) -> InputError:
         ({"contact_radius_m": 5.0}, {}, "task.contact_radius_m", "0.005 m?"),
         ({"probe_spacing_m": 2.0}, {}, "continuity.probe_spacing_m", "0.002 m?"),
         ({"validity_spacing_m": 2.0}, {}, "continuity.validity_spacing_m", "0.002 m?"),
-        ({"border_length_m": 5.0}, {}, "continuity.border_length_m", "0.005 m?"),
         ({"to_ground_m": 10.0}, {}, "margins.to_ground_m", "0.01 m?"),
         ({"tool_radius_m": 15.0}, {}, "motion.tool_radius_m", "0.015 m?"),
         ({"spacing_m": 10.0}, {}, "motion.spacing_m", "0.01 m?"),

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 import trimesh
 from library import INSTANCES
-from shipped import TOP
 from vertex_minima import covers
 
 import cellcolor
@@ -92,14 +87,6 @@ def test_the_bracket_has_sharp_edges() -> None:
     turn = np.degrees(mesh.face_adjacency_angles)
     assert (np.abs(turn - 90) < 1).sum() > 300
     assert (turn < 1).mean() > 0.6
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", some_slow(MESHES))
-def test_files_are_what_the_script_makes(name: str, tmp_path: Path) -> None:
-    script = TOP / "benchmarks" / "parts" / "make.py"
-    subprocess.run([sys.executable, script, tmp_path, name], check=True, capture_output=True)
-    assert (tmp_path / f"{name}.obj").read_bytes() == (PARTS / f"{name}.obj").read_bytes()
 
 
 def test_no_part_is_forgotten() -> None:

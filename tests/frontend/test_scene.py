@@ -61,6 +61,8 @@ MESH = '[object]\nkind = "mesh"\nfile = "none.stl"\nmeters_per_unit = 1.0\n[plac
          "unknown key; is 'placement' meant?"),
         (SETUP, r"base_step_rad = 0.1", "base_step_rad = 0.0", SETUP,
          "continuity.base_step_rad", "greater"),
+        (SETUP, r"(probe_spacing_m)", r"border_length_m = 0.01\n\1", SETUP,
+         "continuity.border_length_m", "no longer known: for exact borders give .* max_edge_m"),
         (SETUP, r'"ur5.urdf"', '"ur7.urdf"', "ur7.urdf", None, "No such file"),
         (SETUP, r'"tool_tip"', '"nose"', "polishing_tool.urdf", "link[nose]", "tip link"),
         (SETUP, r'"shoulder_link"\]', '"elbow"]', SETUP, "robot.may_touch_ground", "'elbow'"),

@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 from shipped import shipped
 
 import cellcolor
-from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER
 from cellcolor.frontend import Scene
 from cellcolor.frontend.parts.placement import Placement, Tolerance
@@ -76,22 +75,20 @@ def test_the_sample_is_always_the_same_and_favors_no_side() -> None:
 
 @pytest.fixture(scope="module")
 def scene() -> Scene:
-    return shipped("wok_obstacle", 120).with_setup(
-        shipped("wok_obstacle", 120).setup.varied(continuity={"border_length_m": None})
-    )
+    return shipped("wok_obstacle", 120)
 
 
 @pytest.mark.second
 def test_colors_hold_wherever_the_part_may_stand(scene: Scene) -> None:
     """Against the scene with each displacement written in, built by itself."""
     asked = prepare(scene.varied(tolerance=OFTEN))
-    stages = judged(asked, StageClock(NEVER, None)).stages
-    own = judged(prepare(scene), StageClock(NEVER, None)).stages
+    stages = judged(asked, StageClock(NEVER, None))
+    own = judged(prepare(scene), StageClock(NEVER, None))
     valid, linked = own.candidates.valid.copy(), own.links.linked.copy()
     places = [there.scene.placement for there in asked.displaced()]
     assert len(places) == OFTEN["samples"]
     for placement in places:
-        there = judged(prepare(scene.varied(placement=placement)), StageClock(NEVER, None)).stages
+        there = judged(prepare(scene.varied(placement=placement)), StageClock(NEVER, None))
         valid &= there.candidates.valid
         linked &= there.links.linked
     assert (stages.candidates.valid == valid).all()
@@ -101,21 +98,6 @@ def test_colors_hold_wherever_the_part_may_stand(scene: Scene) -> None:
     off = stages.candidates.reason_names.index(OFF)
     assert ((stages.candidates.reasons == off) == lost).all()
     assert (stages.candidates.reasons[~lost] == own.candidates.reasons[~lost]).all()
-
-
-@pytest.mark.slow
-def test_finer_borders_are_those_of_what_holds() -> None:
-    """The surface is bisected where colors that hold end, and each new vertex is asked as well."""
-    scene = shipped("wok", 60).varied(tolerance=OFTEN)
-    scene = scene.with_setup(scene.setup.varied(continuity={"border_length_m": 0.012}))
-    built = cellcolor.build(scene)
-    assert len(built.surface.vertices) > 80
-    for placement in [there.scene.placement for there in built.prepared.displaced()]:
-        there = built.prepared.at(placement)
-        surface = built.prepared.surface.taken_along(scene.placement, placement)
-        kept, branches = np.nonzero(built.node_color >= 0)
-        joints = there.arm.follow(surface.vertices[kept], -surface.normals[kept], branches)
-        assert (there.judge(joints).reasons == VALID).all()
 
 
 def test_a_part_is_taken_along_as_it_is_placed(scene: Scene) -> None:

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from triangles import any_meshes, bumpy_ball
 
-from cellcolor.mesh.dividing import bisected_corners, cut, halved, new_points, with_longest_sides
+from cellcolor.mesh.dividing import cut, halved, new_points, with_longest_sides
 from cellcolor.mesh.oriented import directed_edges
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
@@ -88,6 +88,3 @@ def test_longest_sides_are_marked_with_others(seed: int, share: float) -> None:
         if (needed == marked).all():
             break
     assert (needed == marked).all()
-    corners = bisected_corners(mesh, marked)
-    directed_edges(corners, len(mesh.points) + int(marked.sum()))
-    assert len(corners) == len(mesh.corners) + 2 * marked.sum()

@@ -171,7 +171,7 @@ def test_samples_go_round_the_ends_of_cracks(pattern: str, seed: int) -> None:
     edges = sorted({(min(a, b), max(a, b)) for a, b in whole.surface.left_of})
     cracks = [edges[k] for k in rng.choice(len(edges), 12, replace=False)]
     painting = square(8, tuple(cracks))
-    covered = cover(*painting, pattern=pattern, spacing_m=0.05, tool_radius_m=0.05)
+    covered = cover(painting, pattern=pattern, spacing_m=0.05, tool_radius_m=0.05)
     mesh = painting.surface.mesh
     for path, corners in zip(covered.paths.paths, covered.along_border, strict=True):
         samples = sampled(path, even_places(path, corners))

@@ -125,13 +125,11 @@ def test_velocities_and_accelerations_are_kept_and_the_tool_is_no_faster_than_as
 
 
 @pytest.mark.parametrize("motion", ["wok_obstacle"], indirect=True)
-def test_the_tool_touches_at_the_approach_speed_and_jerks_are_limited(motion: Planned) -> None:
-    setup = motion.prepared.setup.varied(
-        motion={"approach_speed_m_per_s": 0.004, "joint_jerks_rad_per_s3": (400.0,) * 6}
-    )
+def test_the_tool_touches_at_the_approach_speed(motion: Planned) -> None:
+    setup = motion.prepared.setup.varied(motion={"approach_speed_m_per_s": 0.004})
     prepared = prepare(motion.prepared.scene.with_setup(setup))
     built = replace(motion.built, prepared=prepared)
-    slow = plan_motion(built, motion.painted, motion.normals).trajectory
+    slow = plan_motion(built, motion.painted).trajectory
     for trajectory, within in ((slow, True), (motion.plan.trajectory, False)):
         steps = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1)
         speed = steps / np.diff(trajectory.times)
@@ -140,7 +138,6 @@ def test_the_tool_touches_at_the_approach_speed_and_jerks_are_limited(motion: Pl
         assert (speed[touching].max() <= 0.004 * (1 + 1e-9)) == within
         verdict = check_trajectory(built, trajectory)
         assert ("velocity" in verdict.fault_counts) != within
-        assert ("jerk" in verdict.fault_counts) != within
 
 
 def test_lift_offs_are_the_proved_minimum_and_all_transfers_are_planned(motion: Planned) -> None:
@@ -172,7 +169,7 @@ def test_all_scenes_have_no_more_lift_offs_than_were_proved(name: str) -> None:
 
 @pytest.mark.parametrize("motion", ["wok_obstacle"], indirect=True)
 def test_the_same_scene_and_seed_give_the_same_trajectory(motion: Planned) -> None:
-    again = plan_motion(motion.built, motion.painted, motion.normals)
+    again = plan_motion(motion.built, motion.painted)
     assert again.trajectory == motion.plan.trajectory
     assert again.paths == motion.plan.paths
 

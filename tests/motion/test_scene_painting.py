@@ -10,16 +10,23 @@ import pytest
 from painted import assert_whole, random_solution
 from shipped import shipped
 
+from cellcolor.arrays import unit
 from cellcolor.data.candidate_table import VALID
+from cellcolor.deadline import NEVER
 from cellcolor.decomposition import decomposition_of
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.kinematics import task_determinants
 from cellcolor.frontend.build import BuildResult
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.lab.families.voronoi import voronoi
 from cellcolor.motion import scene_painting
+from cellcolor.motion.samples import Samples, with_normals_of
 from cellcolor.motion.scene_painting import ScenePainting, color_costs, paint_scene
+from cellcolor.painting.refined import interpolated, unrefined
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
+from cellcolor.trajectory_checker.fine_mesh import refined
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +50,8 @@ def reaches(prepared: PreparedScene, found: ScenePainting) -> bool:
     painted = found.painted
     own = [v for v, color in enumerate(painted.plan.vertex_colors) if color is not None]
     branches = branch[[painted.plan.vertex_colors[v] for v in own]]
-    joints = prepared.arm.follow(painted.surface.vertices[own], -found.normals[own], branches)
+    normals = unit(painted.interpolated(found.built.stages.surface.normals))
+    joints = prepared.arm.follow(painted.surface.vertices[own], -normals[own], branches)
     return bool((prepared.judge(joints).reasons == VALID).all())
 
 
@@ -58,7 +66,6 @@ def test_a_solved_scene_is_painted_as_proved(name: str) -> None:
     assert found.painted.segments == solution.segments == found.painted.minima[0]
     assert found.painted.minima == (solution.segments,) and found.painted.refused == ()
     assert_whole(built.surface, found.painted, solution)
-    assert np.allclose(np.linalg.norm(found.normals, axis=1), 1)
     assert reaches(built.prepared, found)
     borders = found.painted.borders
     assert borders.tool_radius_m == scene.setup.motion.tool_radius_m
@@ -94,7 +101,7 @@ def test_in_the_end_what_is_refused_is_told(
     monkeypatch.setattr(scene_painting, "_TIMES", 1)
     found = by_chance(wok, 0)
     assert found.painted.refused and not reaches(wok.prepared, found)
-    kept = np.ones(len(found.normals), dtype=bool)
+    kept = np.ones(len(found.painted.surface.vertices), dtype=bool)
     kept[list(found.painted.refused)] = False
     colors = [
         color if keep else None
@@ -153,3 +160,22 @@ def test_what_is_left_alone_stays_so_on_a_finer_surface(wok: BuildResult) -> Non
         < np.median(wok.surface.vertices[:, 0])
         + wok.stages.surface.lengths(wok.stages.surface.edges()).max()
     )
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_normals_between_vertices_are_those_that_the_judge_takes(seed: int) -> None:
+    """On a surface whose triangles were halved, with normals that turn by up to half a circle."""
+    rng = np.random.default_rng(seed)
+    surface = voronoi(seed, "disc", size=9, regions=12, colors=3)
+    finer = unrefined(surface)
+    for _ in range(2):
+        finer = finer.halved(rng.random(len(finer.mesh.points)) < 0.3)
+    normals = unit(rng.normal(size=(len(surface.vertices), 3)))
+    faces = rng.integers(0, len(finer.mesh.corners), 200)
+    shares = rng.dirichlet(np.ones(3), 200)
+    points = np.einsum("ki,kij->kj", shares, finer.mesh.points[finer.mesh.corners[faces]])
+    between = interpolated(finer.between, normals)
+    found = with_normals_of(Samples(points, points, faces), finer.mesh, between).normals
+    fine = refined(Surface(surface.vertices, np.array(surface.faces), normals), 1e9, NEVER)
+    facing = np.tile(surface.mesh.triangle_normals[0], (200, 1))
+    assert found == pytest.approx(fine.locate(points, facing).normals, abs=1e-9)

@@ -23,6 +23,7 @@ from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.windings import Parts, PartSteps, parts_of, walls_of
 from cellcolor.tool_paths.cover import cover
 from cellcolor.tool_paths.measures import in_all
+from cellcolor.tool_paths.region import Segments
 
 pytestmark = pytest.mark.second
 
@@ -38,10 +39,9 @@ def test_a_path_without_walls_overruns_the_first_joint(ring: Planned) -> None:
     assert motion is not None
     (color,) = {color for color in ring.painted.plan.vertex_colors if color is not None}
     covered = cover(
-        replace(ring.painted.surface, cracks=()),
-        ring.painted.segment_of,
-        [color],
-        ring.normals,
+        Segments(
+            replace(ring.painted.surface, cracks=()), ring.painted.segment_of, [color], ring.normals
+        ),
         spacing_m=motion.spacing_m,
         tool_radius_m=motion.tool_radius_m,
     )

@@ -52,7 +52,7 @@ def painted_scene(scene: Scene) -> tuple[PreparedScene, BuildResult, Painted, Ar
 def planned_scene(scene: Scene, pattern: str = "contour") -> Planned:
     """A motion over a scene's object."""
     prepared, built, painted, normals, lift_offs = painted_scene(scene)
-    plan = plan_motion(built, painted, normals, pattern=pattern)
+    plan = plan_motion(built, painted, pattern=pattern)
     return Planned(prepared, built, painted, normals, lift_offs, plan)
 
 

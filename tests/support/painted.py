@@ -12,7 +12,6 @@ from __future__ import annotations
 import random
 from collections import defaultdict
 from itertools import pairwise
-from typing import NamedTuple
 
 import networkx as nx
 import numpy as np
@@ -34,6 +33,7 @@ from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families.meshes import grid_faces, make_mesh
 from cellcolor.lab.families.voronoi import voronoi
 from cellcolor.painting.paint import Painted, paint
+from cellcolor.tool_paths.region import Segments
 
 
 def random_seams(instance: Instance, strands: int, rng: random.Random) -> tuple[Seam, ...]:
@@ -181,16 +181,7 @@ def assert_whole(surface: LabelledSurface, painted: Painted, solution: Solution)
 SHAPES = ("disc", "annulus", "sphere", "torus", "double torus")
 
 
-class Painting(NamedTuple):
-    """What tool paths are laid on."""
-
-    surface: LabelledSurface
-    segment_of: np.ndarray
-    colors: list[int]
-    normals: np.ndarray
-
-
-def painted_at_random(seed: int, shape: str) -> Painting:
+def painted_at_random(seed: int, shape: str) -> Segments:
     """A painting with cells of one vertex, cracks, holes and seams."""
     rng = random.Random(seed)
     surface = voronoi(
@@ -210,7 +201,7 @@ def painted_at_random(seed: int, shape: str) -> Painting:
     painted = paint(surface, decomposition, solution)
     color = {sub.segment: sub.color for cell in division for sub in cell.subcells}
     colors = [color.get(number, -1) for number in range(max(color, default=-1) + 1)]
-    return Painting(painted.surface, painted.segment_of, colors, normals_of(painted.surface))
+    return Segments(painted.surface, painted.segment_of, colors, normals_of(painted.surface))
 
 
 def normals_of(surface: LabelledSurface) -> np.ndarray:
@@ -222,7 +213,7 @@ def normals_of(surface: LabelledSurface) -> np.ndarray:
     return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
 
 
-def square(size: int = 11, cracks: tuple[tuple[int, int], ...] = ()) -> Painting:
+def square(size: int = 11, cracks: tuple[tuple[int, int], ...] = ()) -> Segments:
     """The unit square in one segment, a grid of ``size`` times ``size`` vertices."""
     y, x = np.mgrid[0:size, 0:size] / (size - 1)
     points = np.stack([x.ravel(), y.ravel(), np.zeros(size * size)], axis=1)
@@ -231,15 +222,15 @@ def square(size: int = 11, cracks: tuple[tuple[int, int], ...] = ()) -> Painting
 
 def one_segment(
     points: np.ndarray, faces: np.ndarray, cracks: tuple[tuple[int, int], ...] = ()
-) -> Painting:
+) -> Segments:
     """A mesh in one color and one segment."""
     count = len(points)
     made = tuple([Crack(a, b, (0,)) for a, b in cracks])
     surface = LabelledSurface("one", ("a",), points, faces, ((0,),) * count, made)
-    return Painting(surface, np.zeros(count, dtype=np.int64), [0], surface.vertex_normals)
+    return Segments(surface, np.zeros(count, dtype=np.int64), [0], surface.vertex_normals)
 
 
-def whole(shape: str, size: int = 10) -> Painting:
+def whole(shape: str, size: int = 10) -> Segments:
     """A mesh of some shape in one segment, its triangles about as wide as long."""
     if shape == "annulus":  # the one that random surfaces are drawn on has long triangles
         row, column = np.mgrid[0 : 6 * size, 0 : size + 1]

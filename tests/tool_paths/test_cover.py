@@ -10,7 +10,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from painted import SHAPES, Painting, one_segment, painted_at_random, slit, square, whole
+from painted import SHAPES, one_segment, painted_at_random, slit, square, whole
 from path_checker import PathChecker
 
 import cellcolor
@@ -20,16 +20,16 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.lab.families.meshes import grid_faces
 from cellcolor.mesh.dividing import small_areas
-from cellcolor.tool_paths.cover import Covered, check_spacing, cover
-from cellcolor.tool_paths.region import regions_of
+from cellcolor.tool_paths.cover import Bounds, Covered, check_spacing, cover
+from cellcolor.tool_paths.region import Segments, regions_of
 from cellcolor.tool_paths.registry import PATTERNS, pattern_names
 from examples import examples
 
 pytestmark = pytest.mark.second
 
 
-def covered(painting: Painting, pattern: str, spacing: float, **options: object) -> Covered:
-    return cover(*painting, pattern=pattern, spacing_m=spacing, tool_radius_m=spacing, **options)
+def covered(painting: Segments, pattern: str, spacing: float, **options: object) -> Covered:
+    return cover(painting, pattern=pattern, spacing_m=spacing, tool_radius_m=spacing, **options)
 
 
 @pytest.mark.parametrize("pattern", PATTERNS)
@@ -125,7 +125,7 @@ def test_walls_and_what_is_refused_are_kept_off(
     middles = rng.uniform(0, 1, (data.draw(st.integers(0, 4)), 2))
     everywhere = set(range(len(painting.surface.faces)))
     refusals = Discs(middles, data.draw(st.floats(0.02, 0.3)), everywhere)
-    found = covered(painting, pattern, spacing, walls=walls, refusals=refusals)
+    found = covered(painting, pattern, spacing, bounds=Bounds(walls, refusals))
     checker = PathChecker(painting.surface, painting.segment_of, walls)
     finest = spacing / 4
     for path in found.paths.paths:
@@ -133,7 +133,7 @@ def test_walls_and_what_is_refused_are_kept_off(
         assert refusals.depths(path.points).max(initial=0) < finest / 2
     # What is left out is the discs and a rim of one small triangle, and states a place in one.
     out = [place for place in found.uncovered if place.cause == "in a disc"]
-    left = sum(region.mesh.areas.sum() for region in regions_of(*painting, walls))
+    left = sum(region.mesh.areas.sum() for region in regions_of(painting, walls))
     small = [place for place in found.uncovered if place.cause.startswith("a part smaller")]
     parts = found.in_all.area_m2 + sum(place.area_m2 for place in (*out, *small))
     assert parts == pytest.approx(left)
@@ -280,5 +280,5 @@ def test_the_deadline_and_progress() -> None:
 def test_nothing_to_cover() -> None:
     painting = square(3)
     none = np.full(9, -1)
-    found = cover(painting.surface, none, [], painting.normals, spacing_m=0.1, tool_radius_m=0.1)
+    found = cover(painting._replace(segment_of=none, colors=[]), spacing_m=0.1, tool_radius_m=0.1)
     assert found.paths.paths == () and found.in_all.area_m2 == 0 and found.uncovered == ()

@@ -100,7 +100,7 @@ def test_the_far_side_of_a_slit_is_not_covered() -> None:
     size = 21
     top = (size - 1) * size + 9
     painting = square(size, (*slit(size, 9, range(1, size - 1)), (top, top + 1)))
-    (region,) = regions_of(*painting)
+    (region,) = regions_of(painting)
     mesh = region.mesh.refined(0.03)
     # Along the line x = 0.45, just on the left of the slit at x = 0.475.
     graph = mesh.graph()

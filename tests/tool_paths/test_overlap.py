@@ -12,7 +12,7 @@ from scipy.spatial import Delaunay, cKDTree
 
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.tool_paths.overlap import Overlap, clipped, owned
-from cellcolor.tool_paths.region import regions_of
+from cellcolor.tool_paths.region import Segments, regions_of
 from examples import examples
 
 NAMES = ("one", "other")
@@ -59,7 +59,7 @@ def test_a_region_reaches_a_width_beyond_its_segment(
     own = surface.vertices[:, 0] < border
     segment_of = np.where(Overlap(np.full(len(own), width), ~own).widened(surface, own), 0, -1)
     up = np.tile([0.0, 0.0, 1.0], (len(own), 1))
-    (region,) = regions_of(surface, segment_of, (0,), up)
+    (region,) = regions_of(Segments(surface, segment_of, (0,), up))
     (part,) = clipped(region.mesh, surface, own, np.full(len(own), width), 0.0025)
     assert owned(part, surface, own).any()
     points, vertex = sampled(surface)
@@ -79,7 +79,7 @@ def test_nothing_goes_over_a_crack() -> None:
     up = np.tile([0.0, 0.0, 1.0], (len(own), 1))
     parts = [
         part
-        for region in regions_of(surface, segment_of, (0,), up)
+        for region in regions_of(Segments(surface, segment_of, (0,), up))
         for part in clipped(region.mesh, surface, own, np.full(len(own), 0.01), 0.0025)
     ]
     assert sum(part.areas.sum() for part in parts) == pytest.approx(
@@ -105,8 +105,8 @@ def test_the_one_that_can_goes_all_the_way() -> None:
     own = x < 0.05
     labels = [(0, 1) if right or up else (0,) for right, up in zip(~own, y < 0.05, strict=True)]
     surface = replace(surface, vertex_colors=tuple(labels))
-    segment_of = np.where(own, 0, 1)
-    one, other = (Overlap.of(surface, segment_of, (0, 1), segment, 0.02) for segment in (0, 1))
+    segments = Segments(surface, np.where(own, 0, 1), (0, 1), surface.vertex_normals)
+    one, other = (Overlap.of(segments, segment, 0.02) for segment in (0, 1))
     ends = surface.mesh.edges[np.diff(own[surface.mesh.edges], axis=1).ravel()]
     here = np.where(own[ends], ends, -1).max(axis=1)
     both = np.unique(here[y[here] < 0.05])

@@ -20,19 +20,19 @@ def euler(region: Region) -> int:
 
 @pytest.mark.parametrize(("shape", "characteristic"), [("sphere", 2), ("torus", 0)])
 def test_a_closed_segment_has_no_border(shape: str, characteristic: int) -> None:
-    (region,) = regions_of(*whole(shape))
+    (region,) = regions_of(whole(shape))
     assert region.mesh.border_loops() == [] and euler(region) == characteristic
 
 
 def test_a_disc_and_an_annulus() -> None:
-    (disc,) = regions_of(*square(5))
+    (disc,) = regions_of(square(5))
     assert len(disc.mesh.border_loops()) == 1 and euler(disc) == 1
     assert disc.mesh.areas.sum() == pytest.approx(1.0)
     # Without the middle vertex an annulus, whose inner border runs around that vertex's part.
     painting = square(5)
     segment_of = painting.segment_of.copy()
     segment_of[12] = -1
-    (annulus,) = regions_of(painting.surface, segment_of, [0], painting.normals)
+    (annulus,) = regions_of(painting._replace(segment_of=segment_of))
     assert len(annulus.mesh.border_loops()) == 2 and euler(annulus) == 0
 
 
@@ -40,7 +40,7 @@ def test_a_segment_of_one_vertex_is_its_fan() -> None:
     painting = square(5)
     segment_of = painting.segment_of.copy()
     segment_of[12] = 1
-    regions = regions_of(painting.surface, segment_of, [0, 0], painting.normals)
+    regions = regions_of(painting._replace(segment_of=segment_of, colors=[0, 0]))
     own = regions[-1]
     assert own.segment == 1 and euler(own) == 1 and len(own.mesh.corners) == 2 * 6
     assert own.mesh.areas.sum() == pytest.approx(painting.surface.vertex_areas[12])
@@ -49,7 +49,7 @@ def test_a_segment_of_one_vertex_is_its_fan() -> None:
 def test_a_slit_is_a_border_that_parts_nothing() -> None:
     # From row 2 to row 5 of 9: two ends inside, so it makes a hole without area.
     painting = square(9, slit(9, 4, range(2, 6)))
-    (region,) = regions_of(*painting)
+    (region,) = regions_of(painting)
     assert len(region.mesh.border_loops()) == 2 and euler(region) == 0
     assert region.mesh.areas.sum() == pytest.approx(1.0)
     # Every point on it is there twice, but for the two ends.
@@ -61,11 +61,11 @@ def test_a_slit_is_a_border_that_parts_nothing() -> None:
 def test_walls_part_a_segment_like_cracks() -> None:
     painting = square(5)
     through = [*slit(5, 1, range(4)), (21, 22)]
-    parts = regions_of(*painting, walls=through)
+    parts = regions_of(painting, walls=through)
     assert len(parts) == 2
     assert sum(part.mesh.areas.sum() for part in parts) == pytest.approx(1.0)
     assert parts[0].mesh.areas.sum() > parts[1].mesh.areas.sum()
-    cracked = regions_of(*square(5, tuple(through)))
+    cracked = regions_of(square(5, tuple(through)))
     assert [part.small.tolist() for part in cracked] == [part.small.tolist() for part in parts]
 
 
@@ -74,7 +74,7 @@ def test_normals_lie_between_those_of_the_corners() -> None:
         [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0, 1, 2]],
     )])  # fmt: skip
     normals = np.array([[0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
-    (region,) = regions_of(painting.surface, painting.segment_of, [0], normals)
+    (region,) = regions_of(painting._replace(normals=normals))
     at = int(np.argmin(np.linalg.norm(region.mesh.points - [0.5, 0.0, 0.0], axis=1)))
     between = normals[0] + normals[1]
     assert region.mesh.normals[at] == pytest.approx(between / np.linalg.norm(between))
@@ -84,7 +84,7 @@ def test_normals_lie_between_those_of_the_corners() -> None:
 @examples(7)
 def test_parts_have_the_area_of_their_vertices(seed: int, shape: str) -> None:
     painting = painted_at_random(seed, shape)
-    regions = regions_of(*painting)
+    regions = regions_of(painting)
     for segment in range(len(painting.colors)):
         own = [region for region in regions if region.segment == segment]
         area = sum(region.mesh.areas.sum() for region in own)
@@ -102,7 +102,7 @@ def test_parts_have_the_area_of_their_vertices(seed: int, shape: str) -> None:
 @given(st.integers(0, 10**6), st.sampled_from(SHAPES), st.floats(0.02, 0.2))
 @examples(7)
 def test_refining_keeps_area_shape_and_place(seed: int, shape: str, longest: float) -> None:
-    for region in regions_of(*painted_at_random(seed, shape))[:3]:
+    for region in regions_of(painted_at_random(seed, shape))[:3]:
         fine = region.mesh.refined(longest)
         assert fine.lengths.max() <= longest
         assert (fine.areas > 0).all()

@@ -5,20 +5,20 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
-from painted import Painting, square
+from painted import square
 
 from cellcolor.deadline import NEVER
 from cellcolor.tool_paths.contour import lay_contours
 from cellcolor.tool_paths.distances import evened
-from cellcolor.tool_paths.region import regions_of
+from cellcolor.tool_paths.region import Segments, regions_of
 from cellcolor.tool_paths.triangles import Triangles
 from examples import examples
 
 SPACING = 0.05
 
 
-def mesh_of(painting: Painting) -> Triangles:
-    (region,) = regions_of(*painting)
+def mesh_of(painting: Segments) -> Triangles:
+    (region,) = regions_of(painting)
     return region.mesh.refined(SPACING / 2)
 
 

@@ -12,13 +12,11 @@ import pytest
 import rasters
 from world import KINDS, World, standing
 
-import cellcolor
 from cellcolor.arrays import Array
 from cellcolor.data.surface import Crack
 from cellcolor.data.trajectory import ExtraLiftOff, Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.surface import bisected
 from cellcolor.frontend.prepared import prepare
 from cellcolor.trajectory_checker.check import check_trajectory
 from cellcolor.trajectory_checker.tolerances import Limits
@@ -308,21 +306,10 @@ def test_an_empty_trajectory_covers_nothing() -> None:
 
 def test_two_meshes_are_refused() -> None:
     prepared, built, trajectory = rasters.cap()
-    marked = np.zeros(len(prepared.surface.edges()), dtype=bool)
-    marked[0] = True
-    finer = replace(prepared, surface=bisected(prepared.surface, marked, "here"))
+    fewer = replace(prepared.surface, faces=prepared.surface.faces[1:])
+    finer = replace(prepared, surface=fewer)
     with pytest.raises(InputError, match="a trajectory is judged on one"):
         check_trajectory(replace(built, prepared=finer), trajectory)
-
-
-def test_a_scene_with_bisected_borders_is_judged_on_its_own_mesh() -> None:
-    """The door prepares the scene once more, and has to take the mesh that was built."""
-    prepared, built, trajectory = rasters.cap()
-    setup = prepared.setup.varied(continuity={"border_length_m": 0.006})
-    scene = prepared.scene.with_setup(setup)
-    finer = cellcolor.build(scene)
-    assert len(finer.surface.vertices) > len(built.surface.vertices)
-    assert cellcolor.check(finer, trajectory).covered is not None
 
 
 @pytest.mark.parametrize(("margin", "kept"), [(0.0095, True), (0.0105, False)])

@@ -13,7 +13,8 @@ from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER
 from cellcolor.errors import TooLarge
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.trajectory_checker.covered import patches, reach
+from cellcolor.trajectory_checker.contact import Contact
+from cellcolor.trajectory_checker.covered import Coverage, reach
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, refined
 from cellcolor.trajectory_checker.repeated import Strips, passes, repeated_stretches
@@ -40,12 +41,16 @@ SHEET = strip([(x, 0.0) for x in np.linspace(0, 0.1, 11)] + [(0.1, -0.001)]
               + [(x, -0.001) for x in np.linspace(0.09, 0, 10)])  # fmt: skip
 
 
-def dense_along(points: Array, strokes: Array | None = None) -> Dense:
+def contact_along(
+    points: Array, mesh: FineMesh, stroke: Array | None = None, segment: Array | None = None
+) -> Contact:
+    """The tool at points, one stroke of one segment if nothing else is said."""
     k = len(points)
-    none = np.zeros((k, 1))
-    down = np.tile([0.0, 0.0, -1.0], (k, 1))
-    stroke = np.zeros(k, dtype=np.int64) if strokes is None else strokes
-    return Dense(np.arange(k), np.zeros(k), none, points, down, np.ones(k, dtype=bool), stroke)
+    none, zero = np.zeros((k, 1)), np.zeros(k, dtype=np.int64)
+    down, contact = np.tile([0.0, 0.0, -1.0], (k, 1)), np.ones(k, dtype=bool)
+    stroke, segment = (zero if given is None else given for given in (stroke, segment))
+    dense = Dense(np.arange(k), np.zeros(k), none, points, down, contact, stroke)
+    return Contact(dense, np.arange(k), mesh.locate(points, up(points)), segment, none, zero)
 
 
 def along(*corners: tuple[float, float]) -> Array:
@@ -73,43 +78,40 @@ def test_distances_on_a_plane_are_plain_distances(seed: int) -> None:
     random = np.random.default_rng(seed)
     points = np.column_stack([random.uniform(0, [0.1, 0.06], (3, 2)), np.zeros(3)])
     mesh = fine(FLAT)
-    found = reach(mesh, mesh.locate(points, up(points)), 0.03)
+    distance, nearest = reach(mesh, mesh.locate(points, up(points)), 0.03)
     plain = np.linalg.norm(mesh.vertices[:, None] - points, axis=2)
     near = plain.min(axis=1) < 0.027
-    assert np.all(found.distance >= plain.min(axis=1) - 1e-9)
-    assert np.all(found.distance[near] <= 1.09 * plain.min(axis=1)[near] + 3e-4)
-    assert np.all(found.distance[plain.min(axis=1) > 0.03] == np.inf)
-    own = found.nearest >= 0
-    of_nearest = plain[own, found.nearest[own]]
-    assert np.all(of_nearest <= found.distance[own] + 1e-9)
+    assert np.all(distance >= plain.min(axis=1) - 1e-9)
+    assert np.all(distance[near] <= 1.09 * plain.min(axis=1)[near] + 3e-4)
+    assert np.all(distance[plain.min(axis=1) > 0.03] == np.inf)
+    own = nearest >= 0
+    of_nearest = plain[own, nearest[own]]
+    assert np.all(of_nearest <= distance[own] + 1e-9)
 
 
 def test_the_back_of_a_sheet_is_far_from_its_front() -> None:
     mesh = fine(SHEET)
     points = along((0.03, 0.0), (0.03, 0.06))
-    found = reach(mesh, mesh.locate(points, up(points)), 0.015)
+    distance, _ = reach(mesh, mesh.locate(points, up(points)), 0.015)
     back = mesh.vertices[:, 2] < -0.0005
-    assert np.all(np.isinf(found.distance[back]))
+    assert np.all(np.isinf(distance[back]))
     front = ~back & (np.abs(mesh.vertices[:, 0] - 0.03) < 0.013)
-    assert np.all(found.distance[front] < 0.015)
+    assert np.all(distance[front] < 0.015)
     # Around the end it is as near as the way is long.
     points = along((0.095, 0.0), (0.095, 0.06))
-    found = reach(mesh, mesh.locate(points, up(points)), 0.015)
+    distance, _ = reach(mesh, mesh.locate(points, up(points)), 0.015)
     x, below = mesh.vertices[:, 0], mesh.vertices[:, 2] == -0.001
     way = 0.005 + 0.001 + (0.1 - x)
-    assert np.all(np.isfinite(found.distance[below & (way < 0.0145)]))
+    assert np.all(np.isfinite(distance[below & (way < 0.0145)]))
     # Two edges are taken for one straight way, across the rim as well.
-    assert np.all(np.isinf(found.distance[below & (way > 0.017)]))
-    located, rows = mesh.locate(points, up(points)), np.arange(len(points))
-    visits = passes(dense_along(points), rows, 0 * rows, located, mesh, 0.005).sum(axis=1)
+    assert np.all(np.isinf(distance[below & (way > 0.017)]))
+    visits = passes(contact_along(points, mesh), mesh, 0.005).sum(axis=1)
     assert not visits[below & (x < 0.097)].any()
 
 
 def visits_on_flat(points: Array, strokes: Array | None = None) -> tuple[Array, Array]:
     mesh = fine(FLAT)
-    rows = np.arange(len(points))
-    located = mesh.locate(points, up(points))
-    visits = passes(dense_along(points, strokes), rows, 0 * rows, located, mesh, 0.005)
+    visits = passes(contact_along(points, mesh, strokes), mesh, 0.005)
     return mesh.vertices, visits.sum(axis=1)
 
 
@@ -148,11 +150,8 @@ def test_repeated_stretches(begin: float, length: float, off: float) -> None:
     second = along((begin + length, 0.03 + off), (begin, 0.03 + off))
     points = np.concatenate([first, second])
     stroke = np.repeat([0, 1], [len(first), len(second)])
-    mesh = fine(FLAT)
-    located = mesh.locate(points, up(points))
-    rows = np.arange(len(points))
     none = np.full(len(points), -1)
-    found = repeated_stretches(dense_along(points, stroke), rows, located, none, 0.0025, 0.02)
+    found = repeated_stretches(contact_along(points, fine(FLAT), stroke), none, 0.0025, 0.02)
     if off > 0.0025:
         assert found == []
         return
@@ -165,10 +164,8 @@ def test_repeated_stretches(begin: float, length: float, off: float) -> None:
 
 def test_crossing_an_earlier_pass_is_no_repetition() -> None:
     points = along((0.0, 0.03), (0.1, 0.03), (0.1, 0.05), (0.05, 0.05), (0.05, 0.0))
-    mesh = fine(FLAT)
-    located = mesh.locate(points, up(points))
-    rows, none = np.arange(len(points)), np.full(len(points), -1)
-    assert not repeated_stretches(dense_along(points), rows, located, none, 0.0025, 0.02)
+    none = np.full(len(points), -1)
+    assert not repeated_stretches(contact_along(points, fine(FLAT)), none, 0.0025, 0.02)
 
 
 @examples(20)
@@ -183,13 +180,9 @@ def test_segments_may_overlap_in_a_strip_beside_what_is_theirs_alone(
     lines = [along((x, 0.0), (x, 0.06)) for x in (*left, *right)]
     points, segment = np.concatenate(lines), np.repeat([0, 1], [len(left), len(right)])
     stroke = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
-    segment, rows, located = (
-        segment[stroke],
-        np.arange(len(points)),
-        mesh.locate(points, up(points)),
-    )
-    dense = dense_along(points, stroke)
-    visits = passes(dense, rows, segment, located, mesh, spacing / 2)
+    segment = segment[stroke]
+    contact = contact_along(points, mesh, stroke, segment)
+    visits = passes(contact, mesh, spacing / 2)
     strips = Strips.of(mesh, visits, overlap + 1.25 * spacing)
     counted, x = strips.counted(mesh, visits), mesh.vertices[:, 0]
     within = np.abs(mesh.vertices[:, 1] - 0.03) < 0.02
@@ -203,10 +196,10 @@ def test_segments_may_overlap_in_a_strip_beside_what_is_theirs_alone(
     wanted = np.where(shared & twice, double, single)
     sure = within & (np.abs(np.abs(x[:, None] - [*left, *right]) - spacing / 2) > 1e-3).all(axis=1)
     assert np.array_equal(counted[sure], wanted[sure])
-    strip = np.where(strips.near(located.points, segment), segment, -1)
+    strip = np.where(strips.near(contact.at.points, segment), segment, -1)
     assert (strip[segment == 0] == (-1 if twice else 0)).all()
     if not twice:
-        found = repeated_stretches(dense, rows, located, strip, 0.0025, 0.02)
+        found = repeated_stretches(contact, strip, 0.0025, 0.02)
         assert found == []
 
 
@@ -214,20 +207,19 @@ def test_what_stays_in_one_place_is_refused() -> None:
     """Ten thousand places of contact in one square millimeter are a hundred million pairs."""
     random = np.random.default_rng(0)
     points = np.column_stack([random.uniform(0.05, 0.051, (10_000, 2)), np.zeros(10_000)])
-    located, rows = fine(FLAT).locate(points, up(points)), np.arange(len(points))
+    contact, none = contact_along(points, fine(FLAT)), np.full(len(points), -1)
     with pytest.raises(TooLarge, match="too often to be measured"):
-        none = np.full(len(points), -1)
-        repeated_stretches(dense_along(points), rows, located, none, 0.0025, 0.02)
+        repeated_stretches(contact, none, 0.0025, 0.02)
 
 
 def test_patches_are_the_parts_and_their_areas() -> None:
     mesh = fine(FLAT)
     x = mesh.vertices[:, 0]
-    areas = np.full(len(x), 1e-6)
-    found = patches(mesh, areas, (x < 0.0101) | (x > 0.0799))
+    coverage = Coverage(mesh, 0.01, np.full(len(x), 1e-6), np.full(len(x), np.inf), x < 0)
+    found = coverage.patches((x < 0.0101) | (x > 0.0799))
     assert [area for area, _ in found] == pytest.approx(
         [1e-6 * (x > 0.0799).sum(), 1e-6 * (x < 0.0101).sum()]
     )
     assert found[0][1][0] > 0.08
     assert found[1][1][0] < 0.01
-    assert patches(mesh, areas, np.zeros(len(x), dtype=bool)) == []
+    assert coverage.patches(np.zeros(len(x), dtype=bool)) == []

@@ -44,16 +44,24 @@ def test_refined_meshes_conform(seed: int, longest: float) -> None:
     # Every directed edge once: each edge has one triangle on each side, or is on the border.
     assert len(np.unique(sides, axis=0)) == len(sides)
     assert made.euler == 1  # a disc, so nowhere torn
-    assert fine.areas.sum() == pytest.approx(surface.mesh.areas.sum())
-    # Each corner is where its barycentric coordinates in the given face say.
-    given_corners = surface.vertices[surface.faces[fine.face]]
-    assert np.allclose(fine.vertices[fine.triangles], fine.corners @ given_corners)
+    assert fine.mesh.area_faces.sum() == pytest.approx(surface.mesh.areas.sum())
+    # Each corner lies in the given face, with the normal that is interpolated there.
+    corners, given_faces = fine.vertices[fine.triangles], surface.faces[fine.face]
+    for corner in range(3):
+        shares = TriangleMesh(surface.vertices, surface.faces).shares(fine.face, corners[:, corner])
+        assert shares.min() > -1e-9
+        assert np.allclose(
+            np.einsum("kc,kcd->kd", shares, surface.vertices[given_faces]), corners[:, corner]
+        )
+        normals = np.einsum("kc,kcd->kd", shares, surface.normals[given_faces])
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        assert np.allclose(fine.normals[fine.triangles[:, corner]], normals)
 
 
 def test_owners_have_a_third_of_each_face() -> None:
     surface = bumpy(1)
     fine = refined(surface, 0.0008, NEVER)
-    owned = np.bincount(fine.owner, fine.areas, minlength=len(surface.vertices))
+    owned = np.bincount(fine.owner, fine.mesh.area_faces, minlength=len(surface.vertices))
     assert np.allclose(owned, surface.vertex_areas(), rtol=0.05)
 
 

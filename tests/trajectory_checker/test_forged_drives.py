@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import runpy
-from collections.abc import Callable
+import sys
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -17,6 +15,7 @@ from honest_drives import HONEST, Honest, dropped_stroke, resampled
 from hypothesis import given
 from hypothesis import strategies as st
 from motions import planned
+from shipped import TOP
 
 import cellcolor
 from cellcolor.data.trajectory import Trajectory
@@ -24,6 +23,9 @@ from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.trajectory_checker.check import check_trajectory
 from cellcolor.trajectory_checker.joint_motion import corners
 from examples import examples
+
+sys.path.append(str(TOP / "benchmarks"))
+import judge
 
 pytestmark = pytest.mark.second
 
@@ -96,26 +98,20 @@ def test_the_campaign_says_what_was_accepted(
     made = SimpleNamespace(prepared=prepared, built=built, trajectory=trajectory)
     made.solution = SimpleNamespace(lift_offs=1)
     monkeypatch.setattr(cellcolor, "plan", lambda _: made)
-    script = runpy.run_path(
-        str(Path(__file__).parents[2] / "benchmarks" / "forged_drives.py"),
-        {"__name__": "forged_drives_table"},
-    )
-    main: Callable[..., int] = script["main"]
-    scope = main.__globals__
-    scope |= {"SCENES": ("cap",), "HONEST": {"as it is": HONEST["as it is"]}}
-    scope["FORGERS"] = {name: FORGERS[name] for name in ("a move not planned", "time backwards")}
-    assert main(2, 0, 0) == 0
+    monkeypatch.setattr(judge, "SCENES", ("cap",))
+    monkeypatch.setattr(judge, "HONEST", {"as it is": HONEST["as it is"]})
+    few = {name: FORGERS[name] for name in ("a move not planned", "time backwards")}
+    monkeypatch.setattr(judge, "FORGERS", few)
+    assert judge.main(["forged", "2"]) == 0
     out = capsys.readouterr().out
     assert "honest: 1 of 1 accepted" in out and "a stroke dropped: 2 of 2 refused" in out
-    assert "| all 2 sorts | 2 | 2 | 0 |" in out
-    scope["FORGERS"] = {
-        "none": FORGERS["10% of a stroke dropped"],
-        "same": lambda h, _: h.trajectory,
-    }
-    assert main(3, 0, 5) == 1
+    assert "| all 2 | 2 | 2 |" in out
+    same = {"none": FORGERS["10% of a stroke dropped"], "same": lambda h, _: h.trajectory}
+    monkeypatch.setattr(judge, "FORGERS", same)
+    assert judge.main(["forged", "3", "--start", "5"]) == 1
     out = capsys.readouterr().out
-    assert out.count("accepted: same, cap, draw ") == 2 and "draw 5" in out and "draw 7" in out
-    assert "| none | 0 | 0 | 1 |" in out and "| all 2 sorts | 2 | 0 | 1 |" in out
+    assert out.count("not refused: same, draw ") == 2 and "draw 5" in out and "draw 7" in out
+    assert "| none | 0 | 0 |" in out and "| all 2 | 2 | 0 |" in out
 
 
 def test_a_stroke_that_is_not_there_is_area_that_is_not_covered() -> None:

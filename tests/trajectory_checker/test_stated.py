@@ -22,7 +22,9 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import prepare
 from cellcolor.trajectory_checker.check import check_trajectory
 from cellcolor.trajectory_checker.claims import judge_left_out, judge_lift_offs
-from cellcolor.trajectory_checker.covered import failing_places
+from cellcolor.trajectory_checker.contact import Contact
+from cellcolor.trajectory_checker.covered import Coverage, failing_places
+from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.fine_mesh import refined
 from cellcolor.trajectory_checker.other_planners import completed
@@ -117,7 +119,7 @@ def test_a_table_says_what_the_trajectory_states(tmp_path: Path) -> None:
     ]
     assert [e.sample for e in read.extra_lift_offs] == [extra.sample]
     assert read.unplanned == (3,)
-    as_file, as_table = judged(stated), judged(read, tells=False)
+    as_file, as_table = judged(stated), judged(read, limits=Limits(silent=True))
     assert as_file.fault_counts == as_table.fault_counts
     assert "repeated" not in as_table.fault_counts
 
@@ -130,7 +132,7 @@ def test_a_table_is_not_excused_from_what_an_arm_can_do() -> None:
     kept = np.delete(np.arange(len(trajectory.times)), gone)
     names = ("times", "joints", "points", "normals", "contact", "segment")
     half = replace(trajectory, **{name: getattr(trajectory, name)[kept] for name in names})
-    assert judged(half, tells=False).of_kind("uncovered")
+    assert judged(half, limits=Limits(silent=True)).of_kind("uncovered")
 
 
 @pytest.mark.parametrize(
@@ -164,12 +166,11 @@ def test_a_place_is_left_out_rightly_if_it_or_its_vertex_fails(
     fine = refined(Surface(places, faces, np.tile([0.0, 0.0, 1.0], (12, 1))), 2.0, NEVER)
     drive = rasters.cap()[2]
     stated = replace(drive, left_out=(LeftOut(0, 0.5, "self collision", (5.0, 0.0, 0.0)),))
-    reached, asked = np.zeros(12, dtype=bool), np.ones(12, dtype=bool)
     right = np.zeros(12, dtype=bool)
     right[10] = vertex
-    found, areas = FaultList(drive, timed=True), np.full(12, 0.5)
-    failing = np.array([there])
-    judge_left_out(stated, fine, areas, reached, right, asked, failing, 0.1, found)
+    coverage = Coverage(fine, 0.1, np.full(12, 0.5), np.full(12, np.inf), right)
+    found = FaultList(drive, timed=True)
+    judge_left_out(stated, coverage, np.array([there]), found)
     assert found.counts["claim"] == faults
 
 
@@ -183,8 +184,12 @@ def test_stated_places_fail_where_the_branches_of_their_segment_do() -> None:
     parts = [LeftOut(segment, 0.0, "reach", place) for segment in (0, 1) for place in places]
     stated = replace(drive, left_out=tuple(parts))
     fine = refined(surface, 1.0, NEVER)
-    driven, branches = np.array([0]), np.array([branch])
-    failing = failing_places(prepared, stated, driven, branches, fine, NEVER)
+    at, none = fine.locate(surface.vertices[:1], surface.normals[:1]), np.zeros((1, 3))
+    dense = Dense(
+        np.zeros(1, int), np.zeros(1), none, none, none, np.ones(1, bool), np.zeros(1, int)
+    )
+    driven = Contact(dense, np.array([0]), at, np.array([0]), none, np.array([branch]))
+    failing = failing_places(prepared, stated, driven, fine, NEVER)
     assert (failing[: len(places)] == ~valid[:, branch]).all()
     assert (failing[len(places) :] == ~valid.any(axis=1)).all()
     assert 0 < failing[: len(places)].sum() < len(places)

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellcolor.trajectory_checker.on_surface import _steady
+from cellcolor.trajectory_checker.contact import _steady
 
 CHOICES = st.lists(st.sets(st.integers(0, 3), min_size=1), min_size=1, max_size=6)
 

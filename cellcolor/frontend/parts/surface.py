@@ -8,11 +8,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Index, Mask, angles_between
+from cellcolor.arrays import Array, Index, angles_between
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 from cellcolor.frontend.sizes import check_refinement, check_vertices
-from cellcolor.mesh.dividing import bisected_corners, halved, with_longest_sides
+from cellcolor.mesh.dividing import halved
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 Faces = NDArray[np.int64]
@@ -117,29 +117,3 @@ def refine(
         check_vertices(len(mesh.points) + int(marked.sum()), "max_edge_m")
         mesh, of = halved(mesh, marked)
         lies_in = lies_in[of]
-
-
-def bisected(surface: Surface, marked: Mask, field: str) -> Surface:
-    """A surface with some mesh edges bisected, and those others that have to be as well.
-
-    New vertices come after the given ones. Their normals are halfway between those of the ends.
-
-    Args:
-        marked: (k,) which of its edges, in the order of
-            :meth:`~cellcolor.frontend.parts.surface.Surface.edges`.
-        field: the key to name in the error.
-
-    Raises:
-        InputError: there would be too many vertices.
-    """
-    mesh = surface.mesh
-    marked = with_longest_sides(mesh, marked)
-    parted = mesh.edges[marked]
-    check_vertices(len(mesh.points) + len(parted), field)
-    points, directions = along_edges(surface, parted, np.full(len(parted), 0.5))
-    return Surface(
-        np.concatenate([mesh.points, points]),
-        bisected_corners(mesh, marked),
-        np.concatenate([surface.normals, -directions]),
-        surface.faceted,
-    )

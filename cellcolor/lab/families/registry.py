@@ -241,7 +241,7 @@ LARGE: dict[str, Family] = {
     "grids": large_hub_grid,
     "patches": large_patches,
 }
-"""At the limits of the solvers and beyond: ``benchmarks/limits.py``."""
+"""At the limits of the solvers and beyond."""
 
 GROWING: dict[str, Family] = {
     "blobs": growing_blobs,

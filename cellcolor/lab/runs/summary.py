@@ -16,7 +16,6 @@ from cellcolor.lab.runs.statistics import (
     par2,
     strongest,
 )
-from cellcolor.lab.runs.timings import Timing
 
 _OPEN_SHOWN = 40
 
@@ -37,33 +36,6 @@ def summary_of_runs(rows: Sequence[Row]) -> Iterator[str]:
         yield from ("", *_by_family(own, "Seconds, median", _median))
         yield from ("", *_by_family(own, "PAR2, seconds", lambda runs: _number(par2(runs))))
         yield from ("", *_where_others_win(own), "", *_ends(own), "", *_open(own))
-
-
-def summary_of_timings(timings: Sequence[Timing]) -> Iterator[str]:
-    """Lines of Markdown: medians of timings of everything but solvers."""
-    groups: dict[tuple[str, str, int | None], list[Timing]] = {}
-    for one in timings:
-        if one.status == "done":
-            groups.setdefault((one.subject, one.way, one.size), []).append(one)
-    units = {one.unit for one in timings if one.unit}
-    head = ["subject", "way", " or ".join(sorted(units)) or "size", "times", "seconds, median"]
-    body = [
-        [
-            subject,
-            way,
-            "" if size is None else str(size),
-            str(len(own)),
-            f"{median(one.seconds for one in own):.3f}",
-            # Unknown, and stored as 0, for a part of a process.
-            f"{cpu:.3f}" if (cpu := median(one.cpu_seconds for one in own)) else "",
-            f"{max(one.peak_mb for one in own):.0f}",
-        ]
-        for (subject, way, size), own in groups.items()
-    ]
-    yield from markdown_table([*head, "CPU seconds, median", "most MB"], body)
-    for one in timings:
-        if one.status != "done":
-            yield f"\n{one.subject}, {one.way}: {one.status}."
 
 
 def markdown_table(head: Sequence[str], body: Iterable[Sequence[str]]) -> Iterator[str]:

@@ -20,20 +20,6 @@ from cellcolor.files.documents import validate
 _R = TypeVar("_R")
 
 
-def header_of(path: str | PathLike[str], kinds: Sequence[type[Any]]) -> type[Any]:
-    """The kind of a table, by its first line.
-
-    Raises:
-        InputError: the file cannot be read, or is a table of none of these kinds.
-    """
-    with system_errors(path, "cannot be read"), Path(path).open("rb") as file:
-        first = file.readline()
-    for kind in kinds:
-        if first == _line(_columns(kind)).encode():
-            return kind
-    raise InputError(str(path), "line 1", "is not the header of a table of results")
-
-
 def read_table(path: str | PathLike[str], kind: type[_R]) -> list[_R]:
     """The rows of a file; the fields of their dataclass are the columns.
 

@@ -2,8 +2,8 @@
 
 The method looks at two color regions (``cover``) alone and merges their cells where nothing
 separates them (``merged_surface``). A hub is a cell of all colors with a ring of one-colored cells,
-the petals. Around it, two petals of one color that alternate with two of another are in conflict:
-a segment that connects the first two separates the others. The proof is in
+the leaf cells. Around it, two leaf cells of one color that alternate with two of another are in
+conflict: a segment that connects the first two separates the others. The proof is in
 docs/bounds.md.
 """
 

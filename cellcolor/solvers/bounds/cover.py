@@ -1,9 +1,9 @@
-"""Lower bounds that hold for any division of the physical surface: set cover and strangers.
+"""Lower bounds that hold for any division of the physical surface: set cover, independent set.
 
 A color region is a connected component of the cells that have a color. Every segment lies in one,
-so there are at least as many segments as regions needed to touch all cells. Cells of which no
-two lie in a common region, strangers to each other, are in different segments. Strangers are an
-independent set of the graph that joins two cells where a region holds both.
+so there are at least as many segments as regions needed to touch all cells. Cells of which no two
+lie in a common region are in different segments: an independent set of the graph that joins two
+cells where a region holds both. (Files call this kind of bound ``strangers``.)
 """
 
 from __future__ import annotations
@@ -102,9 +102,10 @@ def smallest_cover(regions: Sequence[Region], cells: int) -> int:
 def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> list[int] | None:
     """A few cells that fewer than ``value`` color regions cannot touch: why no cover is smaller.
 
-    If there are as many cells as ``value``, no two of them lie in one color region: they are
-    strangers, which can be seen by eye. Otherwise each group of cells that color regions connect
-    has its own cells: repeatedly, a cell is added that a smallest cover of the others misses.
+    If there are as many cells as ``value``, no two of them lie in one color region: they are an
+    independent set, which can be seen by eye. Otherwise each group of cells that color regions
+    connect has its own cells: repeatedly, a cell is added that a smallest cover of the others
+    misses.
 
     Args:
         value: how many color regions are needed, or fewer.
@@ -112,7 +113,7 @@ def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> li
     Returns:
         The cells, ascending; None if none were found in time.
     """
-    cells = greedy_strangers(instance)
+    cells = greedy_independent_set(instance)
     if len(cells) >= value:
         return sorted(cells)[:value]
     touching = _touching(color_regions(instance), len(instance.cells))
@@ -135,7 +136,7 @@ def _hard_cells_of(
     """:func:`hard_cells` of cells that no color region connects with others."""
     cells = _apart(group, touching)
     if len(cells) < value:
-        cells = max(cells, _strangers(group, touching, deadline), key=len)
+        cells = max(cells, _independent_set(group, touching, deadline), key=len)
     if len(cells) >= value:
         return cells[:value]
     hardest_first = sorted(group, key=lambda cell: len(touching[cell]))
@@ -151,7 +152,9 @@ def _hard_cells_of(
     return None
 
 
-def _strangers(group: Sequence[int], touching: Sequence[set[int]], deadline: Deadline) -> list[int]:
+def _independent_set(
+    group: Sequence[int], touching: Sequence[set[int]], deadline: Deadline
+) -> list[int]:
     """Many cells no two of which lie in one color region; if time allows, a maximum packing."""
     from ortools.sat.python import cp_model
 
@@ -169,7 +172,7 @@ def _strangers(group: Sequence[int], touching: Sequence[set[int]], deadline: Dea
     return [group[place] for place in sorted(found)]
 
 
-def greedy_strangers(instance: Instance, without: Collection[int] = ()) -> list[int]:
+def greedy_independent_set(instance: Instance, without: Collection[int] = ()) -> list[int]:
     """Cells of which no two lie in one color region without some others; not always the most."""
     colors = [frozenset(() if c.id in without else c.colors) for c in instance.cells]
     touching = _touching(color_regions(instance, colors), len(instance.cells))

@@ -152,7 +152,7 @@ class Ranks:
                     self._clause(some, [link, self.joined[abs(here), color]])
             self._clause([self.met[other]], [link, self.met[one]])
             self._clause([], [link, self.met[one], self.up[other]])
-            if self.problem.later_petal(one, other):
+            if self.problem.later_leaf(one, other):
                 self._clause([], [link, self.up[other]])
         for dart, literal in self.up.items():
             self._clause([self.met[dart]], [literal])

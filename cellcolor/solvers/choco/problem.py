@@ -101,15 +101,17 @@ class Problem:
                 found.add(max(only, key=lambda cell: len(self.cells[cell])))
         return frozenset(found)
 
-    def later_petal(self, one: int, other: int) -> bool:
-        """Whether both darts lead to petals, and linked, the second petal need not be the root.
+    def later_leaf(self, one: int, other: int) -> bool:
+        """Whether both darts lead to leaf cells, and linked, the second leaf cell need not be the
+        root.
 
-        A petal is a cell with a single live dart. A segment that can have its root in one of two
-        petals can have it in the other, so the first one suffices, unless the second is a home.
+        A leaf cell is a cell with a single live dart. A segment that can have its root in one of
+        two leaf cells can have it in the other, so the first one suffices, unless the second is a
+        home.
         """
         first, second = (self.cell_of[-dart] for dart in (one, other))
-        petals = len(self.cells[first]) == len(self.cells[second]) == 1
-        return petals and second not in self.homes
+        leaves = len(self.cells[first]) == len(self.cells[second]) == 1
+        return leaves and second not in self.homes
 
     @property
     def size(self) -> float:

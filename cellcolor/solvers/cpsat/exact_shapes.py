@@ -162,7 +162,7 @@ def _down(loop: Sequence[int], up: int) -> Sequence[int]:
 
 
 _State = tuple[int, ...]
-"""A label for each petal on the frontier; connected ones have the same."""
+"""A label for each leaf set on the frontier; connected ones have the same."""
 
 _Step = dict[_State, tuple[_State, Areas]]
 """For each state after a hub: the state before it, and the areas of the hub."""
@@ -170,21 +170,23 @@ _Step = dict[_State, tuple[_State, Areas]]
 
 class _Hubs:
     """Hubs are the cells with several colors. Their neighbors, and what is joined among these
-    neighbors whatever happens, are the **petals**."""
+    neighbors whatever happens, are the **leaf sets**."""
 
     def __init__(self, part: _Part) -> None:
         self.instance, self.loops, self.joinable = part.instance, part.loops, part.joinable
         self.colors, self.deadline = part.colors, part.deadline
         self._hubs = [cell for cell, colors in enumerate(part.colors) if len(colors) > 1]
-        self._petal: dict[int, int] = {}  # across each dart of a hub
+        self._leaf_set: dict[int, int] = {}  # across each dart of a hub
 
     def solve(self) -> Exact | None:
-        """Add hub after hub; a state says which petals on the frontier are connected."""
-        petals = self._petals()
-        if petals is None:
+        """Add hub after hub; a state says which leaf sets on the frontier are connected."""
+        leaf_sets = self._leaf_sets()
+        if leaf_sets is None:
             return None
-        own_of = {hub: [self._petal[dart] for dart in self.loops[hub]] for hub in self._hubs}
-        users = Counter(petal for own in own_of.values() for petal in set(own))  # hubs to come
+        own_of = {hub: [self._leaf_set[dart] for dart in self.loops[hub]] for hub in self._hubs}
+        users = Counter(
+            leaf_set for own in own_of.values() for leaf_set in set(own)
+        )  # hubs to come
         frontier: list[int] = []
         states: dict[_State, int] = {(): 0}  # with the most connections that lead to each
         steps: list[_Step] = []
@@ -199,7 +201,7 @@ class _Hubs:
                 return None
             places = [*frontier, *(p for p in dict.fromkeys(own) if p in shared - set(frontier))]
             users.subtract(set(own))
-            kept = [place for place, petal in enumerate(places) if users[petal]]
+            kept = [place for place, leaf_set in enumerate(places) if users[leaf_set]]
             states, step = self._with_hub(states, ways, places, kept)
             if len(states) > MOST_STATES:
                 return None
@@ -210,25 +212,25 @@ class _Hubs:
         for hub, step in zip(reversed(order), reversed(steps), strict=True):
             last, chosen = step[last]
             areas[hub] = [(color, list(darts)) for color, darts in chosen]
-        self._join_petals(areas)
-        return Exact(len(petals.sets()) - states[()], areas)
+        self._join_leaf_sets(areas)
+        return Exact(len(leaf_sets.sets()) - states[()], areas)
 
-    def _petals(self) -> UnionFind[int] | None:
-        """The petals as sets of cells; None if two hubs touch, or a cell touches itself."""
-        petals = UnionFind(cell for cell, colors in enumerate(self.colors) if len(colors) == 1)
+    def _leaf_sets(self) -> UnionFind[int] | None:
+        """The leaf sets as sets of cells; None if two hubs touch, or a cell touches itself."""
+        leaf_sets = UnionFind(cell for cell, colors in enumerate(self.colors) if len(colors) == 1)
         for edge in self.instance.live_edges:
             sides = self.instance.edge(edge).left, self.instance.edge(edge).right
             many = sum(len(self.colors[side]) > 1 for side in sides)
             if many == 2 or sides[0] == sides[1]:
                 return None
             if not many:
-                petals.union(*sides)
-        self._petal = {
-            dart: petals[self.instance.across(dart)]
+                leaf_sets.union(*sides)
+        self._leaf_set = {
+            dart: leaf_sets[self.instance.across(dart)]
             for hub in self._hubs
             for dart in self.loops[hub]
         }
-        return petals
+        return leaf_sets
 
     def _with_hub(
         self,
@@ -240,12 +242,12 @@ class _Hubs:
         """The states after one more hub, and how each was reached.
 
         Args:
-            places: the petals on the frontier before, then the hub's other shared petals.
+            places: the leaf sets on the frontier before, then the hub's other shared leaf sets.
             kept: those of the places that stay on the frontier.
         """
-        at = {petal: place for place, petal in enumerate(places)}
+        at = {leaf_set: place for place, leaf_set in enumerate(places)}
         placed = [
-            (links, areas, [[at[petal] for petal in group] for group in groups])
+            (links, areas, [[at[leaf_set] for leaf_set in group] for group in groups])
             for groups, (links, areas) in ways.items()
         ]
         found: dict[_State, int] = {}
@@ -266,7 +268,7 @@ class _Hubs:
         of: dict[int, list[int]] = {}
         for hub in self._hubs:
             for dart in self.loops[hub]:
-                of.setdefault(self._petal[dart], []).append(hub)
+                of.setdefault(self._leaf_set[dart], []).append(hub)
         orders = [self._hubs]
         for first in self._hubs[:20]:
             order = dict.fromkeys([first])
@@ -275,7 +277,7 @@ class _Hubs:
                 waiting = list(order)
                 for hub in waiting:
                     for dart in self.loops[hub]:
-                        for other in of[self._petal[dart]]:
+                        for other in of[self._leaf_set[dart]]:
                             if other not in order:
                                 order[other] = None
                                 waiting.append(other)
@@ -292,15 +294,15 @@ class _Hubs:
 
         return min(orders, key=widest) if self._hubs else []
 
-    def _join_petals(self, areas: dict[int, list[tuple[int, list[int]]]]) -> None:
-        """The other sides of what hubs and petals join."""
+    def _join_leaf_sets(self, areas: dict[int, list[tuple[int, list[int]]]]) -> None:
+        """The other sides of what hubs and leaf sets join."""
         for hub in list(areas):
             for color, darts in areas[hub]:
                 for dart in darts:
                     beyond = self.instance.across(dart)
                     areas.setdefault(beyond, [(color, [])])[0][1].append(-dart)
         for edge in self.instance.live_edges:
-            if edge not in self._petal and -edge not in self._petal:
+            if edge not in self._leaf_set and -edge not in self._leaf_set:
                 for dart in (edge, -edge):
                     cell = self.instance.across(-dart)
                     own = areas.setdefault(cell, [(min(self.colors[cell]), [])])

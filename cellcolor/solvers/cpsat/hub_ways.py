@@ -1,8 +1,8 @@
 """The ways to divide a hub all of whose darts have one color (docs/bounds.md, "Hubs").
 
-A **petal** is a neighbor of a hub, or several that are connected in any case. Some are **shared**
-with other hubs, or met twice by this one. To all others it only matters which shared petals a way
-connects, so of ways that connect the same ones only the best is kept.
+A **leaf set** is a neighbor of a hub, or several that are connected in any case. Some are
+**shared** with other hubs, or met twice by this one. To all others it only matters which shared
+leaf sets a way connects, so of ways that connect the same ones only the best is kept.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ MOST_WAYS = 2_000
 """Ways to divide a range of darts; a hub with more of them is left to other methods."""
 
 Groups = frozenset[frozenset[int]]
-"""Groups of shared petals that are connected, each of two and more."""
+"""Groups of shared leaf sets that are connected, each of two and more."""
 
 Areas = tuple[tuple[int, tuple[int, ...]], ...]
 """Areas of a hub, each with its color and its darts."""
 
 Ways = dict[Groups, tuple[int, Areas]]
 """By the groups that a way connects: the most links that it can have besides, and its areas. These
-links are the ones to petals of the hub's own, and between those where an area has no others."""
+links are the ones to leaf sets of the hub's own, and between those where an area has no others."""
 
 
 def hub_ways(
     darts: Sequence[int],
     colors: Sequence[int],
-    petals: Sequence[int],
+    leaf_sets: Sequence[int],
     shared: set[int],
     deadline: Deadline,
 ) -> Ways | None:
@@ -37,14 +37,14 @@ def hub_ways(
     Args:
         darts: of the hub, in cyclic order.
         colors: of each dart.
-        petals: across each dart.
-        shared: petals whose connections matter outside.
+        leaf_sets: across each dart.
+        shared: leaf sets whose connections matter outside.
 
     Returns:
         The ways; None if there are too many.
     """
     count = len(darts)
-    own_shared = [frozenset((petal,)) & shared for petal in petals]
+    own_shared = [frozenset((leaf_set,)) & shared for leaf_set in leaf_sets]
     # Of the darts from the one number to before the other.
     ways: dict[tuple[int, int], Ways] = {}
     for first in reversed(range(count + 1)):
@@ -72,7 +72,7 @@ def _of_range(
     range between each two of them, and one behind the last.
     """
     found: Ways = {}
-    # Open areas by their last dart, the groups between their darts, and their own shared petals:
+    # Open areas by their last dart, the groups between their darts, and their own shared leaf sets:
     # links, the areas between their darts, their darts.
     open_: dict[tuple[int, Groups, frozenset[int]], tuple[int, Areas, tuple[int, ...]]]
     open_ = {(first, frozenset(), shared[first]): (0, (), (first,))}
@@ -88,7 +88,7 @@ def _of_range(
                 if links + more > found.get(closed | others, (-1,))[0]:
                     found[closed | others] = links + more, (*areas, area, *beyond)
             for dart in further:
-                # A petal of its own is a link; a shared one is counted as it connects.
+                # A leaf set of its own is a link; a shared one is counted as it connects.
                 link = int(not shared[dart] or not own)
                 for others, (more, between) in ways[last + 1, dart].items():
                     key = dart, groups | others, own | shared[dart]
@@ -102,7 +102,7 @@ def _of_range(
 
 
 def _undominated(found: Ways) -> Ways:
-    """Without dominated ways: another one connects the same petals with no fewer links."""
+    """Without dominated ways: another one connects the same leaf sets with no fewer links."""
     kept: Ways = {}
     order = sorted(found, key=lambda groups: (-found[groups][0], -sum(map(len, groups))))
     for groups in order:

@@ -90,7 +90,7 @@ def canonical(
 
     None of them adds segments. The first two only add joins or remove sub-cells; the third removes
     a join and a sub-cell, so the process ends. On a graph without seams there are no more cutting
-    paths than before either (docs/semantics/schemes.md).
+    paths than before either (docs/semantics.md, section 8).
 
     Args:
         painting: what is legal on it.

@@ -16,7 +16,7 @@ from ortools.sat.python import cp_model
 from cellcolor.data.solution import ModelSize, Seam
 from cellcolor.deadline import Deadline
 from cellcolor.errors import TooLarge
-from cellcolor.solvers.bounds.cover import Region, color_regions, greedy_strangers, set_cover
+from cellcolor.solvers.bounds.cover import Region, color_regions, greedy_independent_set, set_cover
 from cellcolor.solvers.bounds.crossings import enough_crossings
 from cellcolor.solvers.cpsat.dart_graph import DartGraph, complete_graph, dart_graph, widened
 from cellcolor.solvers.cpsat.drawing import moved, seamed
@@ -70,7 +70,7 @@ class Part:
         self._colors = tuple(frozenset(cell.colors) for cell in part.instance.cells)
         self._enough = enough_crossings(part.instance)
         self._once = dict.fromkeys(self._enough, 1)
-        self.bound = self.surface_bound = len(greedy_strangers(part.instance))
+        self.bound = self.surface_bound = len(greedy_independent_set(part.instance))
         self.by = "strangers"
         self.cover_bound = self.bound
         self.planner: Planner | None = None

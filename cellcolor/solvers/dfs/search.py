@@ -96,7 +96,7 @@ class Search:
         """The painting with one cell more, and Δcost = 1 - j for each of its sub-cells.
 
         Of the neighbors that a sub-cell joins, j counts the distinct *segments*; the paper's rule
-        counts distinct cells (docs/errata.md).
+        counts distinct cells (docs/paper.md, Errata).
         """
         cost, growing = before.cost, dict(before.growing)
         for color, darts in scheme.subcells:

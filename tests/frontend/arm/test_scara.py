@@ -90,7 +90,7 @@ def test_every_configuration_is_among_the_solutions_of_its_pose(order: str, seed
 
 @pytest.mark.parametrize("order", EVERY)
 def test_the_same_solutions_as_by_newton_from_many_starts(order: str) -> None:
-    """On Pinocchio's Jacobian; 5,000 poses of the shipped arm in benchmarks/arms.py."""
+    """On Pinocchio's Jacobian."""
     robot = scara(order, 3)
     joints = configurations(robot, 30, 5)
     for row, ours in enumerate(solved(robot, joints)):

@@ -1,4 +1,4 @@
-"""Every shipped arm's solutions against ssik: 5,000 poses each in ``benchmarks/arms.py``.
+"""Every shipped arm's solutions against ssik: 5,000 poses each with ``-m slow`` (docs/arms.md).
 
 The calibrated arm's are in ``test_many_starts.py``.
 """

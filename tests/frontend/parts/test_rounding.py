@@ -18,7 +18,8 @@ from cellcolor.frontend import sizes
 from cellcolor.frontend.parts import rounding
 from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.rounding import longest_beside_sharp, rounded
-from cellcolor.frontend.parts.surface import Surface, bisected
+from cellcolor.frontend.parts.surface import Surface
+from cellcolor.mesh.dividing import halved
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 
@@ -79,16 +80,16 @@ def test_a_triangle_inside_a_disc_counts_whole_whatever_rounding_leaves_of_its_c
 def test_triangles_have_no_part_in_it(seed: int, radius: float) -> None:
     """A box whose faces are divided at random: its old vertices keep their normals."""
     rng = np.random.default_rng(seed)
-    box = surface_of(trimesh.creation.box((1.0, 1.5, 0.4)).subdivide())
+    box = surface_of(trimesh.creation.box((1.0, 1.5, 0.4)).subdivide()).mesh
     other = box
     for _ in range(3):
-        other = bisected(other, rng.random(len(other.edges())) < 0.1, "test")
+        other, _ = halved(other, rng.random(len(other.edges)) < 0.1)
     before, after = (rounded(surface_of_arrays(x), radius).normals for x in (box, other))
     assert after[: len(before)] == pytest.approx(before, abs=1e-7)
 
 
-def surface_of_arrays(surface: Surface) -> Surface:
-    return mesh_surface(surface.vertices, surface.faces)
+def surface_of_arrays(mesh: TriangleMesh) -> Surface:
+    return mesh_surface(mesh.points, mesh.corners)
 
 
 @settings(max_examples=8, deadline=None)

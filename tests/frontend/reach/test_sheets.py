@@ -67,7 +67,7 @@ def without_names(scene: Scene) -> tuple[PreparedScene, PreparedScene]:
 
 def both(scene: Scene) -> tuple[Stages, Stages]:
     """What comes out with names and without."""
-    first, second = (judged(each, StageClock(NEVER, None)).stages for each in without_names(scene))
+    first, second = (judged(each, StageClock(NEVER, None)) for each in without_names(scene))
     return first, second
 
 
