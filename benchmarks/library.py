@@ -43,6 +43,7 @@ BY_EARLIER = "Only an earlier version proved at least"
 """How a note on such a bound begins, or on one of a kind that is gone."""
 
 PAPER = "Yang, Valls Miro, Lai, Wang, Xiong 2020"
+GONE = "random, of a family that went with version 0.2"
 ORIGINS = {
     "paper/fig*": ("paper", f"a figure of {PAPER}, drawn again"),
     "paper/*": ("by hand", "given with the specification of this project, with its reason"),
@@ -53,6 +54,9 @@ ORIGINS = {
     "parts/*": ("parts", ""),
     "hard/*_raw*": ("parts", ""),
     "random/blobs_*": ("blobs", "random blobs, given with the specification of this project"),
+    "hubs/hub_tree.json": ("hubs", f"{GONE}: cover_tree(0, 10, 4, 20, 3)"),
+    "hubs/hub_wide_40.json": ("hubs", f"{GONE}: wide_hub(0, 40, 8, 2)"),
+    "hard/hub_wide_80.json": ("hubs", f"{GONE}: wide_hub(0, 80, 10, 2)"),
     "random/hub_*": ("hubs", "a random hub, given with the specification of this project"),
     "random/planar_*": ("planar graphs", ""),
     "random/annulus_*": ("holes", ""),
@@ -60,16 +64,16 @@ ORIGINS = {
     "random/disc_*": ("patches", ""),
     "random/sphere_*": ("closed surfaces", ""),
     "random/*torus_*": ("handles", ""),
-    "*/part_*": ("parts at random", ""),
+    "*/part_*": ("parts at random", f"{GONE}: part(0, 150, 40)"),
     "*/rim_*": ("rims", ""),
     "*/thin_*": ("thin bands", ""),
     "*/hub_grid_*": ("hub grids", ""),
     "*/hub_loops_*": ("hubs with loops", ""),
     "*/large_blobs_*": ("blobs", ""),
     "hard/large_*torus_*": ("handles", ""),
-    "hard/large_part_*": ("parts at random", ""),
+    "hard/large_part_*": ("parts at random", f"{GONE}: LARGE['parts'](1)"),
     "*/hub_*": ("hubs", ""),
-    "hard/large_trees_*": ("hubs", ""),
+    "hard/large_trees_*": ("hubs", f"{GONE}: LARGE['trees'](1)"),
     "random/*": ("blobs", ""),
     "hard/*": ("patches", ""),
 }

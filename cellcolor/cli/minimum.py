@@ -147,6 +147,7 @@ def _build_surface(source: Path, output: Path) -> Instance:
 @click.option("--all", "every", is_flag=True, help="List all optimal schemes.")
 @click.option(
     "--warm-start",
+    "start",
     metavar="SOLUTION.json",
     type=PATH,
     help="Start from this solution of the one file given.",
@@ -167,39 +168,25 @@ def _build_surface(source: Path, output: Path) -> Instance:
 @WORKERS
 @SEED
 @json_option("Print JSON Lines, one solution per file.")
-def solve(**given: Any) -> Exit:
+def solve(
+    files: tuple[Path, ...], every: bool, limit: int | None, picture: Path | None, **given: Any
+) -> Exit:
     """Find the fewest segments of instances, labelled surfaces and scenes.
 
     FILE may be the name of a shipped one, such as wok: a file of that name goes first. That holds
     for the other commands as well; cellcolor.library() lists the names in Python.
     """
     begun = time.monotonic()
-    _check_solve(**given)
-
-    from cellcolor.cli.solving import Request, solve_files
-
-    return solve_files(Request(begun=begun, **given))
-
-
-def _check_solve(
-    files: tuple[Path, ...],
-    search_space: str,
-    strands: int | None,
-    every: bool,
-    limit: int | None,
-    picture: Path | None,
-    **given: Any,
-) -> None:
-    """Refuse options that do not go together."""
     asked = {name for name, value in given.items() if value is not None}
+    space = given["search_space"]
     wrong = {
-        "--strands needs --search-space surface": strands is not None and search_space == "paper",
+        "--strands needs --search-space surface": "strands" in asked and space == "paper",
         "--limit needs --all": limit is not None and not every,
         "--all needs --search-space paper: schemes are defined only there": (
-            every and search_space == "surface"
+            every and space == "surface"
         ),
         "--picture is of a single file": picture is not None and len(files) > 1,
-        "--warm-start takes a single file": "warm_start" in asked and len(files) > 1,
+        "--warm-start takes a single file": "start" in asked and len(files) > 1,
         "--required needs --cover: without it everything has to be": (
             "required" in asked and "cover" not in asked
         ),
@@ -207,6 +194,23 @@ def _check_solve(
     for message, is_wrong in wrong.items():
         if is_wrong:
             raise click.UsageError(message)
+
+    from cellcolor.cli.solving import Request, solve_files
+    from cellcolor.solvers.interface import STRANDS
+
+    own = {name: given.pop(name) for name in ("output", "tolerance", "time_limit", "as_json")}
+    given["strands"] = given["strands"] or STRANDS[space]
+    return solve_files(
+        Request(
+            files=files,
+            every=every,
+            limit=limit,
+            picture=picture,
+            search=given,
+            begun=begun,
+            **own,
+        )
+    )
 
 
 @cellcolor.command()

@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
 from types import FrameType
-from typing import IO
+from typing import IO, Any
 
 import click
 
@@ -24,11 +23,11 @@ from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solutio
 from cellcolor.cli.terminal import apart_from, complain, print_json, unheard
 from cellcolor.data.instance import Instance
 from cellcolor.data.schemes import scheme_line
-from cellcolor.data.solution import SearchSpace, Solution
+from cellcolor.data.solution import Division, Solution
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.drawing import kind_of_plot
 from cellcolor.door.result import Result
-from cellcolor.errors import CellcolorError, InputError, TooLarge, system_errors
+from cellcolor.errors import CellcolorError, InputError, system_errors
 from cellcolor.files.writing import (
     Output,
     check_output,
@@ -38,9 +37,8 @@ from cellcolor.files.writing import (
     kind_of_format,
     write,
 )
-from cellcolor.questions.places import Place
 from cellcolor.signals import handled_by
-from cellcolor.solvers.interface import PORTFOLIO, STRANDS, Options
+from cellcolor.solvers.interface import PORTFOLIO, Options
 
 _SOLUTION = kind_of_format(Solution.FORMAT)
 _SCHEMES = 1000  # that are listed unless --limit says otherwise
@@ -64,51 +62,43 @@ def end_the_search() -> Iterator[None]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
-    """What the command line asked for: an attribute for each argument and option of ``solve``.
+    """What the command line asked for.
 
     Attributes:
+        search: what goes on to the front door's ``solve``.
+        every: whether all optimal schemes are listed.
+        limit: how many of them at most.
+        time_limit: seconds for each file.
         begun: when the command began, on the clock of ``time.monotonic``: what it took to start
             counts for the first file.
     """
 
     files: tuple[Path, ...]
     output: Path | None
-    solver: str
-    search_space: SearchSpace
-    strands: int | None
-    cover: float | None
-    required: Place | None
-    left_alone: Place | None
+    search: dict[str, Any]
     tolerance: str | None
     every: bool
-    warm_start: Path | None
     limit: int | None
     picture: Path | None
     time_limit: float | None
-    workers: int | None
-    seed: int
     as_json: bool
     begun: float
 
     @property
     def inputs(self) -> list[Path]:
         """Files that are read."""
-        return [*self.files, *([] if self.warm_start is None else [self.warm_start])]
+        start = self.search["start"]
+        return [*self.files, *([] if start is None else [start])]
 
     @property
     def of_a_part(self) -> bool:
         """Whether something is left out on purpose."""
-        return self.cover is not None or self.left_alone is not None
+        return self.search["cover"] is not None or self.search["left_alone"] is not None
 
     def options(self, deadline: Deadline = NEVER) -> Options:
         """The options for the solver."""
-        return Options(
-            self.search_space,
-            STRANDS[self.search_space] if self.strands is None else self.strands,
-            deadline=deadline,
-            workers=self.workers,
-            seed=self.seed,
-        )
+        asked = {name: self.search[name] for name in ("search_space", "strands", "workers", "seed")}
+        return Options(**asked, deadline=deadline)
 
 
 def solve_files(request: Request) -> Exit:
@@ -117,7 +107,7 @@ def solve_files(request: Request) -> Exit:
     if request.picture is not None:
         check_output(request.picture, kind_of_plot(request.picture), request.inputs)
     _check_able(request)
-    _warn_of_workers(request.workers)
+    _warn_of_workers(request.search["workers"])
     with apart_from(request.output):
         return _solve_files(request, targets)
 
@@ -180,12 +170,12 @@ def _check_able(request: Request) -> None:
 
     What every solver can do is not asked about: bad input has to import no solver.
     """
-    start = request.warm_start is not None
-    if request.every or start or request.search_space != "paper":
+    solver, start = request.search["solver"], request.search["start"] is not None
+    if request.every or start or request.search["search_space"] != "paper":
         from cellcolor.solvers.checked import check_able
 
         try:
-            check_able(request.solver, request.options(), start=start, schemes=request.every)
+            check_able(solver, request.options(), start=start, schemes=request.every)
         except InputError as error:
             raise click.UsageError(str(error)) from error
 
@@ -232,23 +222,9 @@ def _solve(file: Path, target: Path | None, request: Request, deadline: Deadline
     from cellcolor.solvers.checked import check_able_to_list
 
     if request.every:
-        check_able_to_list(request.solver, instance)
+        check_able_to_list(request.search["solver"], instance)
     with progress_of(file) as report, end_the_search():
-        result = solve(
-            subject,
-            solver=request.solver,
-            search_space=request.search_space,
-            strands=request.options().strands,
-            time_limit=deadline,
-            workers=request.workers,
-            seed=request.seed,
-            start=request.warm_start,
-            cover=request.cover,
-            required=request.required,
-            left_alone=request.left_alone,
-            progress=report,
-        )
-    solution = result.solution
+        result = solve(subject, time_limit=deadline, progress=report, **request.search)
     beside = []
     if target is not None and not is_stream(target) and request.of_a_part:
         beside = [_solved(result, target)]
@@ -259,14 +235,10 @@ def _solve(file: Path, target: Path | None, request: Request, deadline: Deadline
     if not request.every:
         if target is not None:
             _make_folder(target)
-            write([*beside, Output.of(target, solution)], request.inputs)
+            write([*beside, Output.of(target, result.solution)], request.inputs)
         return result
     with _spool(target) as spool:
-        if INTERRUPTS.seen:
-            solution = replace(solution, schemes=0, complete=False)
-        else:
-            with scheme_progress_of(file) as count, end_the_search():
-                solution = _with_schemes(result.instance, solution, request, deadline, spool, count)
+        solution = _with_schemes(file, result, request, deadline, spool)
         if target is not None and spool is not None:
             spool.seek(0)
             head = json.dumps(solution.to_document(), ensure_ascii=False) + "\n"
@@ -304,51 +276,28 @@ def _spool(target: Path | None) -> Iterator[IO[bytes] | None]:
 
 
 def _with_schemes(
-    instance: Instance,
-    solution: Solution,
-    request: Request,
-    deadline: Deadline,
-    spool: IO[bytes] | None,
-    report: Callable[[int], None] | None,
+    file: Path, result: Result, request: Request, deadline: Deadline, spool: IO[bytes] | None
 ) -> Solution:
-    """The solution with all optimal schemes counted, each written as soon as it is found.
+    """The solution with all optimal schemes counted, each written as soon as it is found."""
+    from cellcolor.questions.listing_schemes import with_schemes
 
-    One more than the limit is looked for: only so is it known whether the limit cut any off.
-    """
-    from cellcolor.solvers.checked import enumerate_schemes
-    from cellcolor.solvers.interface import Start
-
-    if solution.status != "optimal" or solution.segments is None:
+    solution = result.solution
+    if INTERRUPTS.seen:
         return replace(solution, schemes=0, complete=False)
-    started = time.monotonic()
-    complete, notes = True, solution.notes
-    # How many there are, and where the last of them ends: changed together, so that a signal in
-    # between leaves no scheme uncounted and none in half.
-    found = (0, 0)
-    counted: list[int] = []
-    known = None if solution.cells is None else Start(solution.cells, solution.seams)
-    try:
-        options, most = request.options(deadline), request.limit or _SCHEMES
-        listed = enumerate_schemes(
-            instance, options, request.solver, solution.segments, known, counted.append
-        )
-        for division in listed:
-            if found[0] == most:
-                complete = False
-                break
+    # Where each scheme ends: after a signal the last may be there in half, or not be counted.
+    ends = [0]
+    with scheme_progress_of(file) as count, end_the_search():
+
+        def take(division: Division) -> None:
             if spool is not None:
                 spool.write(scheme_line(division).encode() + b"\n")
-            found = (found[0] + 1, 0 if spool is None else spool.tell())
-            if report is not None:
-                report(found[0])
-    except OutOfTime:
-        complete = False
-    except TooLarge as error:
-        complete, notes = False, (*notes, str(error))
-    count, end = found
+            ends.append(0 if spool is None else spool.tell())
+            if count is not None:
+                count(len(ends) - 1)
+
+        solver, most = request.search["solver"], request.limit or _SCHEMES
+        options = request.options(deadline)
+        solution = with_schemes(result.instance, solution, solver, options, most, take)
     if spool is not None:
-        spool.truncate(end)
-    if not complete and counted:
-        notes = (*notes, f"There are {counted[0]:,} optimal schemes; {count:,} of them are listed.")
-    seconds = solution.seconds + time.monotonic() - started
-    return replace(solution, schemes=count, complete=complete, seconds=seconds, notes=notes)
+        spool.truncate(ends[solution.schemes or 0])
+    return solution

@@ -168,11 +168,9 @@ class Matching:
     def _settled(self, edge: Index, step: Array) -> Iterator[tuple[int, int, bool | None]]:
         """What is left over at both ends of an edge: pairs, each with a verdict.
 
-        Yields:
-            The configurations a and b. True: the caller says that they belong together. None: they
-            are the nearest to each other and not far apart, so they are matched. False: they are
-            the nearest to each other, but too far apart. Pairs that the caller denies do not
-            appear.
+        True if the caller says that they belong together; None if they are the nearest to each
+        other and not far apart, so that they are matched; False if they are the nearest, but too
+        far apart. Pairs that the caller denies do not appear.
         """
         i, j = edge.tolist()
         while np.isfinite(step).any():

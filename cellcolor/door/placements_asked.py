@@ -119,9 +119,6 @@ class PlacementTable(AbstractContextManager["PlacementTable"]):
 class AskedPlacements:
     """Computes minima of placements, in this process or in others.
 
-    Attributes:
-        complete: whether every placement asked so far has got its row, before the deadline.
-
     Args:
         workers: the processes that compute; None for this one.
         table: the known minima; new ones are added.
@@ -144,7 +141,6 @@ class AskedPlacements:
         self._workers, self._table, self._deadline = workers, table, deadline
         self._seed, self._report = seed, report
         self._done = 0
-        self.complete = True
 
     def minima(self, scene: Scene, mesh: str, poses: Sequence[Pose]) -> list[PlacedMinimum]:
         """A row for each placement, in order; fewer if the deadline comes first.
@@ -168,9 +164,7 @@ class AskedPlacements:
             self._done += len(rows)
             self._report(f"{self._done} placements")
         found = [self._table.get(mesh, pose) for pose in poses]
-        rows = [row for row in found if row is not None]
-        self.complete &= len(rows) == len(poses)
-        return rows
+        return [row for row in found if row is not None]
 
     def _asked(
         self, scene: Scene, parts: Sequence[Sequence[Pose]]

@@ -3,12 +3,13 @@
 A set-up is the same surface as another placement, or another arm, labels it. The colors of several
 set-ups stand side by side on one labelled surface; no color of one leads on into a color of
 another, so the ordinary solver proves its minimum. Which set-ups these are is settled in turns
-(logic-based Benders decomposition, docs/setups.md). A master model chooses color regions that cover
-enough; every segment lies in one region of one set-up, so at least so many are needed. The surface
-with the colors of these regions alone is solved, which is quick. What it needs in truth the master
-learns, for these regions and all that lie within them, and chooses others, until none of those
-could be better. Where the fewest set-ups are asked for, each set of so few has a master of its own,
-as far as these can be listed: small models are solved in no time, one with all regions is not.
+(logic-based Benders decomposition, docs/questions.md). A master model chooses color regions that
+cover enough; every segment lies in one region of one set-up, so at least so many are needed. The
+surface with the colors of these regions alone is solved, which is quick. What it needs in truth the
+master learns, for these regions and all that lie within them, and chooses others, until none of
+those could be better. Where the fewest set-ups are asked for, each set of so few has a master of
+its own, as far as these can be listed: small models are solved in no time, one with all regions is
+not.
 """
 
 from __future__ import annotations

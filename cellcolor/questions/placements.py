@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from math import isfinite
 from typing import Any
 
+from cellcolor.data.prices import check_price
 from cellcolor.data.wording import count, lift_offs_of
+from cellcolor.errors import InputError
 
 VARIABLES = ("x", "y", "z", "roll", "pitch", "yaw")
 """Of a placement: the position in m, and extrinsic x, y, z angles in rad, as in a scene."""
@@ -15,6 +18,10 @@ VARIABLES = ("x", "y", "z", "roll", "pitch", "yaw")
 Pose = tuple[float, float, float, float, float, float]
 """Position in m and angles in rad, in the order of :data:`VARIABLES`."""
 
+Ranges = Mapping[str, tuple[float, float]]
+"""From where to where each variable goes; those that are missing stay."""
+
+_MOST_TILES = 1000
 _SAME_SHARE = 1e-9
 _FEW = 3  # reasons of refusals that are told
 
@@ -34,6 +41,91 @@ def _most_common(reasons: Counter[str]) -> str:
     """The commonest reasons, each with its number, as in "nothing is reached: 5"."""
     listed = [f"{reason}: {number}" for reason, number in reasons.most_common(_FEW)]
     return "; ".join(listed) + "; …" * (len(reasons) > _FEW)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlacementQuestion:
+    """What is asked about placements.
+
+    Attributes:
+        ranges: from where to where the part may be moved: ``x``, ``y`` and ``z`` in m, and its
+            angles ``roll``, ``pitch`` and ``yaw`` (extrinsic x, y, z) in rad. What is not in it
+            stays.
+        cover: the share of the whole surface that has to be covered, 0 to 1; None for as much as
+            where the part stands, and for any share if ``uncovered_price`` is given.
+        points: placements that are tried all over the ranges; about three quarters as many, 15 at
+            least, are tried around the best of them.
+        best: how many are proved on the scene's own mesh and listed.
+        vertices: about how many the coarse mesh has on which placements are tried.
+        base: move the arm's base instead of the part, upright; its ranges are those of the base in
+            the scene's world, where it stands in the origin.
+        uncovered_price: in lift-offs, of the whole surface: the sum of lift-offs and of this price
+            times the uncovered share is least. With 0 lift-offs come first, then the area.
+        tiles: of one or two ranges a map is made, with so many tiles along each: the placements
+            tried all over the ranges are the middles of its tiles, whatever ``points`` says.
+        leeway: tell how far the best ones may be off before their lift-offs rise, tried up to so
+            many m.
+        seed: for all random choices.
+
+    Raises:
+        InputError: a range, a share or a number is none.
+    """
+
+    ranges: Ranges
+    cover: float | None = None
+    points: int = 128
+    best: int = 3
+    vertices: int = 300
+    base: bool = False
+    uncovered_price: float = 0.0
+    tiles: int | None = None
+    leeway: float | None = None
+    seed: int = 0
+
+    @classmethod
+    def of(cls, **given: Any) -> PlacementQuestion:
+        """A question whose ranges are given one by one; a range that is None is missing."""
+        named = {name: given.pop(name, None) for name in VARIABLES}
+        question = cls(
+            ranges={name: own for name, own in named.items() if own is not None}, **given
+        )
+        if question.cover is None and question.uncovered_price:
+            return replace(question, cover=0.0)
+        return question
+
+    def __post_init__(self) -> None:
+        for name in ("points", "best", "vertices"):
+            if getattr(self, name) < 1:
+                raise InputError(None, name, f"must be 1 or more, is {getattr(self, name)}")
+        if self.cover is not None and not 0 <= self.cover <= 1:
+            raise InputError(None, "cover", f"must be from 0 to 1, is {self.cover:g}")
+        check_price("uncovered_price", self.uncovered_price)
+        if self.base and self.leeway is not None:
+            raise InputError(None, "leeway", "is asked of a part only, not of a moved base")
+        if self.leeway is not None and not 0 < self.leeway < 1:
+            raise InputError(None, "leeway", f"must be from 0 to 1 m, is {self.leeway:g}")
+        for name, own in self.ranges.items():
+            self._check_range(name, own)
+        if not self.ranges:
+            message = f"nothing may move: give a range of {', '.join(VARIABLES)}"
+            raise InputError(None, None, message)
+        if self.tiles is not None and not (
+            len(self.ranges) <= 2 and 1 <= self.tiles <= _MOST_TILES
+        ):
+            message = f"a map needs one or two ranges, and 1 to {_MOST_TILES} tiles along each"
+            raise InputError(None, "tiles", message)
+
+    def _check_range(self, name: str, given: tuple[float, float]) -> None:
+        try:
+            low, high = map(float, given)
+        except (TypeError, ValueError) as error:
+            raise InputError(None, name, "its range must be two numbers") from error
+        if not (isfinite(low) and isfinite(high)):
+            raise InputError(None, name, "its range must be two numbers")
+        if low >= high:
+            raise InputError(None, name, f"the range from {low:g} to {high:g} is empty")
+        if self.base and name in ("roll", "pitch"):
+            raise InputError(None, name, "the arm's base stays upright")
 
 
 @dataclass(frozen=True, slots=True)

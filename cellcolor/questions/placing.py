@@ -9,7 +9,7 @@ some in the whole of them, then some in smaller and smaller boxes around the bes
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -26,38 +26,12 @@ from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.stages import judged
-from cellcolor.questions.placements import VARIABLES, PlacedMinimum, Pose
+from cellcolor.questions.placements import VARIABLES, PlacedMinimum, Pose, Ranges
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 
-Ranges = Mapping[str, tuple[float, float]]
-"""From where to where each variable goes; those that are missing stay."""
-
 _FITTED = 4  # times that a displacement is scaled; a turn moves points along arcs
 _FINE_ENOUGH = 1.5  # times the vertices that are wanted; a mesh up to there is not made coarser
-
-
-def check_ranges(ranges: Ranges, base: bool = False) -> None:
-    """Refuse ranges that are none, and those of a base that would be tilted.
-
-    Raises:
-        InputError: a variable is unknown, a range is empty or has no numbers, or there is none.
-    """
-    for name, given in ranges.items():
-        if name not in VARIABLES:
-            raise InputError(None, name, f"is none of {', '.join(VARIABLES)}")
-        try:
-            low, high = map(float, given)
-        except (TypeError, ValueError) as error:
-            raise InputError(None, name, "its range must be two numbers") from error
-        if not (np.isfinite(low) and np.isfinite(high)):
-            raise InputError(None, name, "its range must be two numbers")
-        if low >= high:
-            raise InputError(None, name, f"the range from {low:g} to {high:g} is empty")
-        if base and name in ("roll", "pitch"):
-            raise InputError(None, name, "the arm's base stays upright")
-    if not ranges:
-        raise InputError(None, None, f"nothing may move: give a range of {', '.join(VARIABLES)}")
 
 
 def pose_of(placement: Placement) -> Pose:

@@ -89,7 +89,7 @@ class TestStatistics:
         assert par2(times("x", 2.0, 4.0, None)) == pytest.approx(26 / 3)
 
     def test_what_is_late_does_not_count(self) -> None:
-        """The limit of 10 s is kept within a tenth and a second, until 12 s."""
+        """The limit of 10 s is kept within two seconds, until 12 s."""
         assert [replace(ROW, seconds=s).solved for s in (11.9, 12.1)] == [True, False]
         assert par2([replace(ROW, seconds=12.1)]) == 20.0
 

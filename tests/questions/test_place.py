@@ -55,7 +55,7 @@ def place(**changes: Any) -> Placements:
 def fewer_boxes() -> Iterator[None]:
     """Two boxes around each of the best placements, not five: the same search, sooner over."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("cellcolor.door.placing._CLOSER", (0.3, 0.08))
+        patch.setattr("cellcolor.questions.searching_places._CLOSER", (0.3, 0.08))
         yield
 
 
@@ -249,8 +249,8 @@ def test_a_table_that_cannot_be_gone_on_from_is_refused(written: Path, tmp_path:
 
 def test_how_far_a_placement_may_be_off(monkeypatch: pytest.MonkeyPatch) -> None:
     """Against the samples, each built and solved again, nearest first."""
-    monkeypatch.setattr("cellcolor.door.placing._BESIDE", 6)
-    monkeypatch.setattr("cellcolor.door.placing._TOGETHER", 4)
+    monkeypatch.setattr("cellcolor.questions.searching_places._BESIDE", 6)
+    monkeypatch.setattr("cellcolor.questions.searching_places._TOGETHER", 4)
     found = place(points=2, best=1, leeway=0.2, cover=0.5)
     (row,) = found.best
     assert row.leeway is not None and row.leeway.to_document() == row.to_document()["leeway"]

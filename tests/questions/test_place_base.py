@@ -126,7 +126,7 @@ def test_with_a_price_the_sum_is_least(rows: list[tuple[int, int]], price: float
 def test_the_command_moves_the_base(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cellcolor.door.placing._CLOSER", (0.3,))
+    monkeypatch.setattr("cellcolor.questions.searching_places._CLOSER", (0.3,))
     wok = SCENES / "wok_obstacle.toml"
     asked = ("--points", "1", "--vertices", "50", "--best", "1", "--uncovered-price", "20")
     table = tmp_path / "places.csv"

@@ -1,8 +1,6 @@
-"""Random surfaces of any genus, parts, hubs with loops, cover trees: legal, seeded, as large."""
+"""Random surfaces of any genus, hubs with loops: legal, seeded, as large."""
 
 from __future__ import annotations
-
-from collections import Counter
 
 import numpy as np
 import pytest
@@ -16,11 +14,8 @@ from cellcolor.errors import InputError
 from cellcolor.lab.families import (
     SHAPES,
     Topology,
-    cover_tree,
     hub_with_loops,
-    part,
     voronoi,
-    wide_hub,
 )
 from cellcolor.lab.families.meshes import make_mesh
 from cellcolor.mesh.oriented import directed_edges
@@ -141,47 +136,6 @@ def test_grown_colors_are_connected_and_scattered_ones_are_not() -> None:
     assert components(True) > 8
 
 
-@pytest.mark.parametrize(
-    ("cells", "colors"), [(150, 60), pytest.param(500, 200, marks=pytest.mark.slow)]
-)
-def test_parts_have_so_many_cells_and_colors(cells: int, colors: int) -> None:
-    surface = part(1, cells, colors)
-    instance = decompose(surface)
-    assert (len(instance.cells), len(instance.colors)) == (cells, colors)
-    sizes = sorted(Counter(c for cell in instance.cells for c in cell.colors).values())
-    assert len(sizes) == colors
-    # Like raw real parts: most colors are local, some reach over much of the part.
-    assert sizes[colors // 2] <= 2 and sizes[-4] > cells / 8
-    assert max(len(cell.colors) for cell in instance.cells) <= 8
-    assert max(sum(map(len, cell.loops)) for cell in instance.cells) >= 20
-    assert max(len(cell.loops) for cell in instance.cells) >= 5
-    assert any(edge.colors is not None for edge in instance.edges)
-
-
-def test_the_colors_of_a_part_are_connected_components() -> None:
-    """As a front end makes them: walked over mesh edges without a crack, each is one piece."""
-    surface = part(2, 150, 60)
-    cracks = {(crack.i, crack.j): crack.colors for crack in surface.cracks}
-    beside: dict[int, set[int]] = {}
-    for a, b in directed_edges(surface.faces, len(surface.vertices)):
-        beside.setdefault(a, set()).add(b)
-    for color in range(60):
-        left = {v for v, own in enumerate(surface.vertex_colors) if color in own}
-        stack = [left.pop()]
-        while stack:
-            a = stack.pop()
-            for b in beside[a] & left:
-                if color not in cracks.get((min(a, b), max(a, b)), ()):
-                    left.remove(b)
-                    stack.append(b)
-        assert not left, color
-
-
-def test_parts_are_seeded() -> None:
-    one, again, other = (part(seed, 100, 30).to_json() for seed in (7, 7, 8))
-    assert one == again != other
-
-
 def test_hub_with_loops_has_a_ring_round_each() -> None:
     instance = hub_with_loops(3, 5, 4, 4)
     assert len(instance.cells) == 21
@@ -192,31 +146,6 @@ def test_hub_with_loops_has_a_ring_round_each() -> None:
     assert hub_with_loops(3, 5, 4, 4).to_json() == instance.to_json()
     assert hub_with_loops(4, 5, 4, 4).to_json() != instance.to_json()
     assert _characteristic(instance) == 2
-
-
-def test_wide_hub_has_petals_of_many_colors() -> None:
-    instance = wide_hub(1, 200, 100, 20)
-    assert len(instance.cells) == 201 and len(instance.cells[0].loops[0]) == 200
-    assert {len(cell.colors) for cell in instance.cells[1:]} == {20}
-    assert wide_hub(1, 200, 100, 20).to_json() == instance.to_json()
-    assert wide_hub(2, 200, 100, 20).to_json() != instance.to_json()
-    assert _characteristic(instance) == 2
-
-
-def test_cover_tree_is_a_tree() -> None:
-    instance = cover_tree(1, 50, 6, 50)
-    assert len(instance.cells) == 350 and len(instance.edges) == 349
-    assert Counter(len(cell.colors) for cell in instance.cells) == {3: 300, 50: 50}
-    assert cover_tree(1, 50, 6, 50).to_json() == instance.to_json()
-    assert cover_tree(2, 50, 6, 50).to_json() != instance.to_json()
-    reached, stack = {0}, [0]
-    while stack:
-        for loop in instance.cells[stack.pop()].loops:
-            for cell in map(instance.across, loop):
-                if cell not in reached:
-                    reached.add(cell)
-                    stack.append(cell)
-    assert len(reached) == 350
 
 
 def _characteristic(instance: Instance) -> int:
@@ -260,14 +189,8 @@ def _characteristic(instance: Instance) -> int:
         lambda: voronoi(0, "disc", 8, 0),
         lambda: voronoi(0, "disc", 8, 65),
         lambda: voronoi(0, "disc", 8, 5, 0),
-        lambda: part(0, 10, 3),
-        lambda: part(0, 100, 60),
         lambda: hub_with_loops(0, 0, 4, 4),
         lambda: hub_with_loops(0, 2, 3, 2),
-        lambda: wide_hub(0, 5, 3, 4),
-        lambda: wide_hub(0, 1, 3, 1),
-        lambda: cover_tree(0, 0, 3, 4),
-        lambda: cover_tree(0, 3, 3, 2),
     ],
 )
 def test_impossible_families_are_refused(make: object) -> None:

@@ -6,15 +6,12 @@ All of them are functions of a seed and a few numbers; the same arguments give t
 
 from cellcolor.lab.families.blobs import blobs as blobs
 from cellcolor.lab.families.graphs import planar_graph as planar_graph
-from cellcolor.lab.families.hubs import cover_tree as cover_tree
 from cellcolor.lab.families.hubs import hub as hub
 from cellcolor.lab.families.hubs import hub_grid as hub_grid
 from cellcolor.lab.families.hubs import hub_minimum as hub_minimum
 from cellcolor.lab.families.hubs import hub_with_loops as hub_with_loops
-from cellcolor.lab.families.hubs import wide_hub as wide_hub
 from cellcolor.lab.families.meshes import SHAPES as SHAPES
 from cellcolor.lab.families.meshes import Topology as Topology
-from cellcolor.lab.families.parts import part as part
 from cellcolor.lab.families.registry import GROWING as GROWING
 from cellcolor.lab.families.registry import LARGE as LARGE
 from cellcolor.lab.families.registry import MEDIUM as MEDIUM

@@ -49,58 +49,6 @@ def hub_with_loops(seed: int, loops: int, petals: int, colors: int) -> Instance:
     return _hub(f"hub_{seed}_{loops}x{petals}", rings, colors)
 
 
-def wide_hub(seed: int, petals: int, colors: int, choices: int) -> Instance:
-    """A hub whose petals have so many random colors each; neighbors may share some.
-
-    Raises:
-        InputError: there is no such hub.
-    """
-    possible = petals > 1 and 1 <= choices <= colors
-    _require(possible, f"hub has {petals} petals with {choices} of {colors} colors")
-    rng = random.Random(f"wide hub {seed} {petals} {colors} {choices}")
-    ring = [tuple(sorted(rng.sample(range(colors), choices))) for _ in range(petals)]
-    return _hub(f"wide_hub_{seed}_{petals}", [ring], colors)
-
-
-def cover_tree(seed: int, hubs: int, leaves: int, colors: int, choices: int = 3) -> Instance:
-    """Hubs with all colors, joined to a random tree, and leaves on each with ``choices`` colors.
-
-    Every color is one region, so that the bound by set cover is a hitting set of all the leaves'
-    random sets, which is hard to find by itself.
-
-    Raises:
-        InputError: there is no such tree.
-    """
-    possible = hubs > 0 and leaves > 0 and 1 <= choices <= colors
-    _require(possible, f"tree has {hubs} hubs of {leaves} leaves with {choices} of {colors} colors")
-    rng = random.Random(f"cover tree {seed} {hubs} {leaves} {colors} {choices}")
-    sets = [tuple(range(colors))] * hubs
-    loops: list[list[int]] = [[] for _ in range(hubs)]
-    edges: list[Edge] = []
-
-    def join(left: int, right: int) -> None:
-        edges.append(Edge(len(edges) + 1, left, right))
-        loops[left].append(len(edges))
-        loops[right].append(-len(edges))
-
-    for number in range(1, hubs):
-        join(rng.randrange(number), number)
-    for number in range(hubs * leaves):
-        sets.append(tuple(sorted(rng.sample(range(colors), choices))))
-        loops.append([])
-        join(number // leaves, len(sets) - 1)
-    return Instance(
-        f"cover_tree_{seed}_{hubs}x{leaves}",
-        tuple(f"c{color}" for color in range(colors)),
-        # A tree is planar in whatever order the darts stand.
-        tuple(
-            Cell(i, own, (tuple(rng.sample(loop, len(loop))),) if loop else ())
-            for i, (own, loop) in enumerate(zip(sets, loops, strict=True))
-        ),
-        tuple(edges),
-    )
-
-
 def _ring(rng: random.Random, petals: int, colors: int) -> list[int]:
     """Random colors of a ring of petals, no two successive ones equal."""
     while True:

@@ -17,9 +17,8 @@ from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.lab.families.blobs import blobs
 from cellcolor.lab.families.graphs import planar_graph
-from cellcolor.lab.families.hubs import cover_tree, hub, hub_grid, hub_with_loops, wide_hub
+from cellcolor.lab.families.hubs import hub, hub_grid, hub_with_loops
 from cellcolor.lab.families.meshes import SHAPES, Topology
-from cellcolor.lab.families.parts import part
 from cellcolor.lab.families.voronoi import voronoi
 
 MOST_SMALL_CELLS = 10
@@ -121,13 +120,6 @@ def large_voronoi(topology: Topology, seed: int) -> LabelledSurface:
     )
 
 
-def large_part(seed: int) -> LabelledSurface:
-    """A machined part of about a hundred to 1500 cells."""
-    rng = random.Random(f"part {seed}")
-    cells = round(math.exp(rng.uniform(math.log(100), math.log(1500))))
-    return part(seed, cells, min(500, round(cells * rng.uniform(0.2, 0.5))))
-
-
 def large_hub_with_loops(seed: int) -> Instance:
     """A hub with a ring of petals round each of up to a dozen loops."""
     rng = random.Random(f"loops {seed}")
@@ -135,20 +127,10 @@ def large_hub_with_loops(seed: int) -> Instance:
 
 
 def large_hub(seed: int) -> Instance:
-    """A hub of up to 400 petals, of one color each or of several."""
+    """A hub of up to 400 petals."""
     rng = random.Random(f"petals {seed}")
     petals = rng.randint(50, 400)
-    if seed % 2:
-        return hub(seed, petals, rng.randint(3, 100))
-    colors = rng.randint(4, 100)
-    return wide_hub(seed, petals, colors, rng.randint(1, max(1, colors // 4)))
-
-
-def large_tree(seed: int) -> Instance:
-    """A tree of hubs and leaves, whose set cover is hard to find."""
-    rng = random.Random(f"trees {seed}")
-    hubs = rng.randint(5, 70)
-    return cover_tree(seed, hubs, rng.randint(2, 8), rng.randint(10, 80), rng.randint(2, 5))
+    return hub(seed, petals, rng.randint(3, 100))
 
 
 def large_hub_grid(seed: int) -> Instance:
@@ -234,10 +216,8 @@ MEDIUM: dict[str, Family] = {
 
 LARGE: dict[str, Family] = {
     **{topology: partial(large_voronoi, topology) for topology in SHAPES},
-    "parts": large_part,
     "loops": large_hub_with_loops,
     "petals": large_hub,
-    "trees": large_tree,
     "grids": large_hub_grid,
     "patches": large_patches,
 }

@@ -17,7 +17,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.errors import CellcolorError, InputError, RefusedResult, SolverMissing, TooLarge
 from cellcolor.lab.families.registry import GROWING, LARGE, MEDIUM, SMALL, Family
-from cellcolor.lab.runs.row import Key, Row, Status
+from cellcolor.lab.runs.row import LATE, Key, Row, Status
 from cellcolor.lab.workers import Task, Workers, as_they_end
 from cellcolor.processes import Ended, Limits
 from cellcolor.solvers.interface import Options
@@ -246,7 +246,7 @@ class Sweep:
                 self._done.add(key)
                 options = Options(plan.search_space, workers=workers, seed=repetition)
                 # The process's own limits are met only by what does not keep its own.
-                seconds = _START_UP + 1.1 * limit + 1.0 + _CHECKING
+                seconds = _START_UP + limit + LATE + _CHECKING
                 limits = Limits(seconds, plan.megabytes)
                 yield known, Task(answer, (instance, solver, options, limit), limits)
 

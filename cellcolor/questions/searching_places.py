@@ -1,0 +1,201 @@
+"""The search of ``cellcolor.place``: many placements on a coarse mesh, the best ones proved.
+
+First come placements all over the ranges, then some in smaller and smaller boxes around the best
+ones. Those that are best then are built and proved on the scene's own mesh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TypeAlias
+
+from cellcolor.deadline import NEVER, Deadline, OutOfTime
+from cellcolor.errors import InputError
+from cellcolor.frontend.scene import Scene
+from cellcolor.questions.placements import (
+    Leeway,
+    PlacedMinimum,
+    PlacementMap,
+    PlacementQuestion,
+    Placements,
+    Pose,
+)
+from cellcolor.questions.placing import (
+    around,
+    coarse_scene,
+    displaced,
+    distance,
+    is_inside,
+    middles,
+    pose_of,
+    spread,
+)
+
+Minima: TypeAlias = Callable[[Scene, str, Sequence[Pose]], list[PlacedMinimum]]
+"""Asks for the minimum of each placement of a scene; the text names the mesh. There are fewer rows
+if the time limit comes first."""
+
+_OWN = "own"  # the mesh of the scene itself
+_CLOSER = (0.3, 0.15, 0.08, 0.04, 0.02)
+"""Shares of the ranges, of the boxes around the best placements; by measure (docs/questions.md)."""
+_AROUND = 3  # placements that get boxes
+_NEXT = 0.05  # of the ranges; of placements nearer to each other one is enough
+_BESIDE = 64  # samples of how far a placement may be off
+_TOGETHER = 16  # of them, before it is asked whether they hold
+
+
+def search_places(
+    scene: Scene,
+    question: PlacementQuestion,
+    alone: Minima,
+    many: Minima,
+    deadline: Deadline,
+    report: Callable[[str], None],
+) -> Placements:
+    """Look for placements with fewer lift-offs, and prove the best ones.
+
+    Args:
+        alone: what asks about the scene's own placement.
+        many: what asks about all others, perhaps in other processes.
+        report: told what is being done.
+
+    Raises:
+        InputError: the part cannot stand where the scene has it, and no share is asked for.
+        OutOfTime: the deadline came before the scene itself was solved.
+    """
+    report("where it stands")
+    start = (0.0,) * 6 if question.base else pose_of(scene.placement)
+    rows = alone(scene, _OWN, [start])
+    if not rows:
+        raise OutOfTime
+    if question.cover is None and rows[0].segments is None:
+        message = (
+            "say how much has to be covered: where the scene has it, the part cannot stand "
+            f"({rows[0].refused or 'not solved in time'})"
+        )
+        raise InputError(None, "cover", message)
+    search = _Search(scene, question, rows[0], many, report)
+    try:
+        search.try_on_coarse_mesh(deadline)
+        search.prove()
+    except OutOfTime:
+        search.complete = False
+    return search.found()
+
+
+class _Search:
+    """What is known so far.
+
+    Attributes:
+        complete: whether the time limit left nothing out.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        question: PlacementQuestion,
+        here: PlacedMinimum,
+        many: Minima,
+        report: Callable[[str], None],
+    ) -> None:
+        self.complete = True
+        self._scene, self._question, self._here = scene, question, here
+        self._many, self._report = many, report
+        self._cover = here.covered_share if question.cover is None else question.cover
+        self._enough = self._cover  # on the coarse mesh
+        self._tried: list[PlacedMinimum] = []
+        self._listed: list[PlacedMinimum] = []
+        self._others: list[PlacedMinimum] = []
+        asked, start = question, here.pose
+        if asked.tiles is None:
+            self._whole = spread(asked.ranges, start, asked.points, asked.seed)
+        else:
+            self._whole = middles(asked.ranges, start, asked.tiles)
+
+    def try_on_coarse_mesh(self, deadline: Deadline) -> None:
+        """Try placements all over the ranges, then around the best ones."""
+        asked = self._question
+        self._report("a coarse mesh")
+        coarse, mesh = coarse_scene(self._scene, asked.vertices, deadline), str(asked.vertices)
+        self._tried += self._minima(coarse, mesh, [self._here.pose, *self._whole])
+        if asked.cover is None and self._tried:
+            # The share of a coarse mesh is another one: like is compared with like.
+            self._enough = self._tried[0].covered_share
+        for number, share in enumerate(_CLOSER, 1):
+            each = max(asked.points // 20, 1)
+            near = [
+                pose
+                for turn, row in enumerate(self._best_of(self._tried, _AROUND, self._enough))
+                for pose in around(
+                    asked.ranges, row.pose, share, each, asked.seed + 10 * number + turn
+                )
+            ]
+            self._tried += self._minima(coarse, mesh, near)
+
+    def prove(self) -> None:
+        """Build and prove the best ones on the scene's own mesh."""
+        asked = self._question
+        self._report("proving the best ones")
+        chosen = [row.pose for row in self._best_of(self._tried, 2 * asked.best, self._enough)]
+        proved = self._minima(self._scene, _OWN, chosen)
+        self._listed = self._best_of(proved, asked.best, self._cover)
+        self._others = [row for row in proved if row not in self._listed]
+        if asked.leeway is None:
+            return
+        for number, row in enumerate(self._listed):
+            self._report(f"how far placement {number + 1} may be off")
+            self._listed[number] = replace(row, leeway=self._leeway(row, asked.leeway))
+
+    def found(self) -> Placements:
+        """The answer."""
+        asked, tiled = self._question, None
+        if asked.tiles is not None:
+            by_pose = {row.pose: row for row in self._tried}
+            tiles = tuple(by_pose.get(pose) for pose in self._whole)
+            tiled = PlacementMap(asked.ranges, asked.tiles, tiles)
+        return Placements(
+            self._scene.name,
+            self._cover,
+            self._here,
+            tuple(self._listed),
+            (*self._tried, *self._others),
+            self.complete,
+            tiled,
+            asked.base,
+            asked.uncovered_price,
+        )
+
+    def _minima(self, scene: Scene, mesh: str, poses: Sequence[Pose]) -> list[PlacedMinimum]:
+        rows = self._many(scene, mesh, poses)
+        self.complete &= len(rows) == len(poses)
+        return rows
+
+    def _best_of(
+        self, rows: Sequence[PlacedMinimum], count: int, cover: float
+    ) -> list[PlacedMinimum]:
+        """The best ones in the ranges, none of them next to a better one."""
+        ranges, price = self._question.ranges, self._question.uncovered_price
+        chosen: list[PlacedMinimum] = []
+        allowed = [row for row in rows if is_inside(ranges, row.pose)]  # the start may not be
+        for row in sorted(allowed, key=lambda row: row.rank(cover, price)):
+            apart = all(distance(ranges, row.pose, other.pose) >= _NEXT for other in chosen)
+            if row.segments is not None and apart and len(chosen) < count:
+                chosen.append(row)
+        return chosen
+
+    def _leeway(self, placed: PlacedMinimum, up_to_m: float) -> Leeway:
+        """How far the part may be off a placement before its lift-offs rise."""
+        vertices = self._scene.covered(NEVER).vertices
+        beside = displaced(vertices, placed.pose, up_to_m, _BESIDE, self._question.seed)
+        holds, least = 0.0, placed.covered_share
+        for first in range(0, _BESIDE, _TOGETHER):
+            some = beside[first : first + _TOGETHER]
+            rows = self._minima(self._scene, _OWN, [pose for _, pose in some])
+            if len(rows) < len(some):
+                raise OutOfTime
+            for number, ((off, _), row) in enumerate(zip(some, rows, strict=True), first + 1):
+                if row.segments is None or row.segments > (placed.segments or 0):
+                    return Leeway(holds, off, number, least)
+                holds, least = off, min(least, row.covered_share)
+        return Leeway(holds, None, _BESIDE, least)
