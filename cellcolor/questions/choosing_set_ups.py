@@ -7,8 +7,9 @@ another, so the ordinary solver proves its minimum. Which set-ups these are is s
 cover enough; every segment lies in one region of one set-up, so at least so many are needed. The
 surface with the colors of these regions alone is solved, which is quick. What it needs in truth the
 master learns, for these regions and all that lie within them, and chooses others, until none of
-those could be better. Where the fewest set-ups are asked for, each set of so few has a master of its own,
-as far as these can be listed: small models are solved in no time, one with all regions is not.
+those could be better. Where the fewest set-ups are asked for, each set of so few has a master of
+its own, as far as these can be listed: small models are solved in no time, one with all regions is
+not.
 """
 
 from __future__ import annotations
