@@ -12,7 +12,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.setup import Motion
 from cellcolor.trajectory_checker.contact import Contact
-from cellcolor.trajectory_checker.covered import FAR, NEAR, CoveredArea, covered_by, failing_places
+from cellcolor.trajectory_checker.covered import FAR, NEAR, Reached, covered_by, failing_places
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
 from cellcolor.trajectory_checker.fine_mesh import FineMesh
 from cellcolor.trajectory_checker.repeated import Repeated, Strips, passes, repeated_stretches
@@ -48,10 +48,10 @@ def judge_area(
         stated = set(trajectory.segment[trajectory.contact].tolist())
     else:
         stated = {part.segment for part in trajectory.left_out}
-    coverage = covered_by(built, contact, fine, spacing, stated, deadline)
+    reached = covered_by(built, contact, fine, spacing, stated, deadline)
     failing = failing_places(built.prepared, trajectory, contact, fine, deadline)
-    judge_left_out(trajectory, coverage, failing, faults)
-    _note_uncovered(coverage, limits, faults)
+    judge_left_out(trajectory, reached, failing, faults)
+    _note_uncovered(reached, limits, faults)
     contact = replace(contact, segment=np.unique(contact.segment, return_inverse=True)[1])
     by_segment = passes(contact, fine, _VISIT * spacing)
     visits, strip = by_segment.sum(axis=1), np.full(len(contact), -1)
@@ -59,10 +59,10 @@ def judge_area(
         strips = Strips.of(fine, by_segment, motion.overlap_m + _BESIDE * spacing)
         visits = strips.counted(fine, by_segment)
         strip = np.where(strips.near(contact.at.points, contact.segment), contact.segment, -1)
-    visited = (visits > 0) & (coverage.areas > 0)
+    visited = (visits > 0) & (reached.areas > 0)
 
     def mean(of: Array) -> float:
-        weights = coverage.areas[visited]
+        weights = reached.areas[visited]
         return float(np.average(of[visited], weights=weights)) if len(weights) else 0.0
 
     mean_visits = mean(visits)
@@ -72,14 +72,14 @@ def judge_area(
         faults.add("repeated", text)
     twice = repeated_stretches(contact, strip, _ALONG * spacing, _APART * spacing)
     stated_m = _note_repeated(contact, twice, limits.longest_repeated_spacings * spacing, faults)
-    total = coverage.total
+    total = reached.total
     return CoveredArea(
         reachable_m2=total,
         spacing_m=spacing,
-        covered_share=coverage.share(coverage.near),
-        closely_covered_share=coverage.share(coverage.distance <= NEAR * spacing),
-        left_out_share=coverage.share(coverage.right),
-        uncovered_m2=float(coverage.areas[coverage.uncovered].sum()),
+        covered_share=reached.share(reached.near),
+        closely_covered_share=reached.share(reached.distance <= NEAR * spacing),
+        left_out_share=reached.share(reached.right),
+        uncovered_m2=float(reached.areas[reached.uncovered].sum()),
         mean_visits=mean_visits,
         most_visits=int(visits[visited].max(initial=0)),
         visited_again_share=mean(visits > 1),
@@ -100,24 +100,24 @@ def _thinned(contact: Contact, spacing: float) -> Mask:
     return kept
 
 
-def _note_uncovered(coverage: CoveredArea, limits: Limits, faults: FaultList) -> None:
+def _note_uncovered(reached: Reached, limits: Limits, faults: FaultList) -> None:
     """Note parts as large as a footprint that no pass comes near, and shares that are too low."""
-    spacing, uncovered = coverage.spacing, coverage.uncovered
-    for area, place in coverage.patches(uncovered):
+    spacing, uncovered = reached.spacing, reached.uncovered
+    for area, place in reached.patches(uncovered):
         if area > np.pi * spacing**2:
             text = f"{area:.6f} m² are farther than {FAR * spacing:.4g} m from every pass"
             faults.add("uncovered", text, place=place)
     for mask, factor, least in (
         (uncovered, FAR, limits.least_covered_share),
-        (coverage.missed & ~coverage.right, NEAR, limits.least_closely_covered_share),
+        (reached.missed & ~reached.right, NEAR, limits.least_closely_covered_share),
     ):
-        share = 1 - coverage.share(mask)
+        share = 1 - reached.share(mask)
         if share < least:
             text = (
                 f"{share:.3%} of the reachable area is within {factor * spacing:.4g} m of a pass "
                 f"or rightly left out, at least {least:.3%} has to be"
             )
-            faults.add("uncovered", text, place=coverage.patches(mask)[0][1])
+            faults.add("uncovered", text, place=reached.patches(mask)[0][1])
 
 
 def _note_repeated(

@@ -23,7 +23,7 @@ FAR, NEAR = 1.5, 0.75  # spacings; from a pass to what counts as covered, as clo
 
 
 @dataclass(frozen=True)
-class CoveredArea:
+class Reached:
     """What the passes come near to, and what they rightly do not.
 
     Attributes:
@@ -87,7 +87,7 @@ def covered_by(
     spacing: float,
     stated: Iterable[int],
     deadline: Deadline,
-) -> CoveredArea:
+) -> Reached:
     """What passes cover, and what is rightly left out.
 
     The trajectory has to state that it leaves something out. Beside a pass of a segment of which
@@ -99,7 +99,7 @@ def covered_by(
     """
     distance, nearest = reach(fine, contact.at, FAR * spacing)
     right = np.zeros(len(fine.vertices), dtype=bool)
-    found = CoveredArea(fine, spacing, reachable_areas(built, fine), distance, right)
+    found = Reached(fine, spacing, reachable_areas(built, fine), distance, right)
     beside = np.append(contact.segment, -1)[nearest]
     every = np.arange(len(built.branches))
     regions = [(beside == one, contact.branches[contact.segment == one]) for one in sorted(stated)]

@@ -11,7 +11,7 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.trajectory_checker.covered import CoveredArea
+from cellcolor.trajectory_checker.covered import Reached
 from cellcolor.trajectory_checker.dense import angles
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import POSE_ANGLE, POSE_DISTANCE
@@ -118,7 +118,7 @@ def judge_lift_offs(trajectory: Trajectory, minimum: int | None, faults: FaultLi
 
 
 def judge_left_out(
-    trajectory: Trajectory, coverage: CoveredArea, failing: Mask, faults: FaultList
+    trajectory: Trajectory, reached: Reached, failing: Mask, faults: FaultList
 ) -> None:
     """Note stated places that could have been covered, and stated areas that are not true.
 
@@ -130,12 +130,12 @@ def judge_left_out(
     """
     if not trajectory.left_out:
         return
-    spacing, vertices = coverage.spacing, coverage.fine.vertices
-    total, out = coverage.total, float(coverage.areas[coverage.right].sum())
+    spacing, vertices = reached.spacing, reached.fine.vertices
+    total, out = reached.total, float(reached.areas[reached.right].sum())
     stated = sum(part.area_m2 for part in trajectory.left_out)
     if out > _AREA_SHARE * stated + np.pi * spacing**2:
         faults.add("claim", f"{stated:.6f} m² are stated to be left out, and {out:.6f} m² are")
-    wrong = coverage.uncovered
+    wrong = reached.uncovered
     for part, fails in zip(trajectory.left_out, failing.tolist(), strict=True):
         place = np.array(part.place)
         if not 0 <= part.area_m2 <= total:

@@ -11,7 +11,10 @@ from typing import Any
 
 import pytest
 from exhaustive_minima import literal_minimum, live_darts, minimum, optimal_schemes
+from hypothesis import assume, given
+from hypothesis import strategies as st
 from library import INSTANCES, PAPER
+from meshes import beside
 from ortools.sat.python import cp_model
 from vertex_minima import vertex_minimum
 
@@ -21,11 +24,13 @@ from cellcolor.data.solution import SchemeKey, count_segments, scheme_key
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
-from cellcolor.lab.families import blobs, planar_graph
+from cellcolor.lab.families import blobs, planar_graph, voronoi
+from cellcolor.lab.families.meshes import SHAPES, Topology
 from cellcolor.lab.families.registry import SMALL
 from cellcolor.solvers.cpsat import CompleteModel, CompleteModelSolver, CpSatSolver
 from cellcolor.solvers.dfs import CoverReferenceSolver, ReferenceSolver
 from cellcolor.solvers.interface import Options, Solver
+from examples import examples
 
 PAPERS, COVERED = ReferenceSolver(), CoverReferenceSolver()
 WITH_STRANDS: tuple[Solver, ...] = (COVERED, CpSatSolver(), CompleteModelSolver())
@@ -178,6 +183,21 @@ def test_random_graphs(self_edges: bool, first: int) -> None:
                 compare(instance)
             except AssertionError as error:
                 raise AssertionError(f"{instance.name}: {error}") from error
+
+
+@examples(15)
+@given(
+    seed=st.integers(0, 10**6),
+    shapes=st.lists(st.sampled_from(sorted(SHAPES)), min_size=1, max_size=2),
+    cracks=st.integers(0, 2),
+)
+def test_surfaces_of_any_genus(seed: int, shapes: list[Topology], cracks: int) -> None:
+    """Open and closed ones, tori among them, with cracks, in one part or two."""
+    drawn = [voronoi(seed + n, shape, 6, 5, 3, cracks=cracks) for n, shape in enumerate(shapes)]
+    instance = decompose(beside(drawn))
+    assume(1 < len(instance.cells) < 11 and instance.most_live_loops < 2)
+    assume(instance.most_live_darts < 8)
+    compare(instance)
 
 
 def drawn_graphs(family: str, seeds: range) -> Iterator[Instance]:

@@ -111,6 +111,23 @@ def torus(n: int = 4, m: int = 5) -> tuple[NDArray[np.float64], Faces]:
     return points, faces
 
 
+def beside(parts: Sequence[LabelledSurface]) -> LabelledSurface:
+    """Surfaces in the same colors as the parts of one."""
+    start = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    return LabelledSurface(
+        "parts",
+        parts[0].colors,
+        np.concatenate([part.vertices for part in parts]),
+        np.concatenate([part.faces + n for n, part in zip(start, parts, strict=False)]),
+        tuple(own for part in parts for own in part.vertex_colors),
+        tuple(
+            Crack(crack.i + int(n), crack.j + int(n), crack.colors)
+            for n, part in zip(start, parts, strict=False)
+            for crack in part.cracks
+        ),
+    )
+
+
 @st.composite
 def surfaces(draw: st.DrawFn) -> LabelledSurface:
     """Open and closed surfaces with unreachable points, cracks, holes and several cells."""

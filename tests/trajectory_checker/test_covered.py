@@ -14,7 +14,7 @@ from cellcolor.deadline import NEVER
 from cellcolor.errors import TooLarge
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.trajectory_checker.contact import Contact
-from cellcolor.trajectory_checker.covered import CoveredArea, reach
+from cellcolor.trajectory_checker.covered import Reached, reach
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, refined
 from cellcolor.trajectory_checker.repeated import Strips, passes, repeated_stretches
@@ -215,7 +215,7 @@ def test_what_stays_in_one_place_is_refused() -> None:
 def test_patches_are_the_parts_and_their_areas() -> None:
     mesh = fine(FLAT)
     x = mesh.vertices[:, 0]
-    coverage = CoveredArea(mesh, 0.01, np.full(len(x), 1e-6), np.full(len(x), np.inf), x < 0)
+    coverage = Reached(mesh, 0.01, np.full(len(x), 1e-6), np.full(len(x), np.inf), x < 0)
     found = coverage.patches((x < 0.0101) | (x > 0.0799))
     assert [area for area, _ in found] == pytest.approx(
         [1e-6 * (x > 0.0799).sum(), 1e-6 * (x < 0.0101).sum()]

@@ -22,7 +22,7 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import prepare
 from cellcolor.trajectory_checker.check import check_trajectory
 from cellcolor.trajectory_checker.contact import Contact
-from cellcolor.trajectory_checker.covered import CoveredArea, failing_places
+from cellcolor.trajectory_checker.covered import Reached, failing_places
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.fine_mesh import refined
@@ -168,7 +168,7 @@ def test_a_place_is_left_out_rightly_if_it_or_its_vertex_fails(
     stated = replace(drive, left_out=(LeftOut(0, 0.5, "self collision", (5.0, 0.0, 0.0)),))
     right = np.zeros(12, dtype=bool)
     right[10] = vertex
-    coverage = CoveredArea(fine, 0.1, np.full(12, 0.5), np.full(12, np.inf), right)
+    coverage = Reached(fine, 0.1, np.full(12, 0.5), np.full(12, np.inf), right)
     found = FaultList(drive, timed=True)
     judge_left_out(stated, coverage, np.array([there]), found)
     assert found.counts["claim"] == faults

@@ -5,14 +5,19 @@ from __future__ import annotations
 from random import Random
 
 import holes
+import pytest
 from dart_graphs import graph_of
 from hypothesis import given
 from hypothesis import strategies as st
-from rooms import hub
+from mutants import change
+from rooms import graph as cells_of
+from rooms import hub, petal_cells
 
-from cellcolor.checker.division import check_division
+from cellcolor.checker.division import check_division, check_scheme
+from cellcolor.data.instance import Instance
 from cellcolor.lab.families import planar_graph
-from cellcolor.solvers.cpsat.dart_graph import DartGraph, complete_graph
+from cellcolor.solvers.cpsat import painting as paintings
+from cellcolor.solvers.cpsat.dart_graph import DartGraph, complete_graph, dart_graph
 from cellcolor.solvers.cpsat.drawing import seamed
 from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, division_of, segments_of
 from cellcolor.solvers.cpsat.parts import loops_of, seam_places
@@ -94,3 +99,61 @@ def test_a_canonical_painting_joins_what_shows_one_color() -> None:
     graph = graph_of(instance)
     result = canonical(graph, [[Block(RED, set())] for _ in instance.cells])
     assert result[0] == [Block(RED, set(graph.lists[0]))]
+
+
+BOTH = RED, BLUE
+SMALL = {
+    "hub": hub(RED, RED, RED, RED, BLUE),
+    "two loops": cells_of((BOTH, (1, 2), (3, 4)), *petal_cells(RED, RED, RED, RED)),
+    "one in a hole": cells_of((BOTH, (1, 2, 3), (4,)), *petal_cells(RED, BLUE, RED, BOTH)),
+}
+
+
+def every_division_becomes_a_scheme(instance: Instance) -> bool:
+    """With no more segments, as docs/semantics/schemes.md says of any division."""
+    graph = dart_graph(instance, dict.fromkeys(instance.live_edges, 1), None)
+    for division in holes.divisions(instance):
+        painting = [
+            [
+                Block(color, {graph.number_of[d, 1] for d in own})
+                for color, own in sorted(cell, key=str)
+            ]
+            for cell in division
+        ]
+        found = division_of(graph, paintings.canonical(graph, painting))
+        report = check_scheme(instance, found)
+        if not report.is_scheme or (report.segments or 0) > holes.segments(division):
+            return False
+    return True
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_every_division_becomes_a_scheme(name: str) -> None:
+    assert every_division_becomes_a_scheme(SMALL[name])
+
+
+@pytest.mark.parametrize(
+    ("step", "old", "new", "name"),
+    [
+        ("a single dart goes", "if single is not None:", "if False:", "hub"),
+        (
+            "successive darts",
+            "self._unite(self.block_of[dart], self.block_of[following])",
+            "pass",
+            "hub",
+        ),
+        (
+            "no chain connects them",
+            "if len(self._loops) > 1:\n            self._merge_unconnected()",
+            "pass",
+            "two loops",
+        ),
+        ("both sides show one color", "if one.color == its.color and", "if False and", "hub"),
+    ],
+)
+def test_every_step_is_needed(
+    step: str, old: str, new: str, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The four steps of docs/semantics/schemes.md, each taken out once."""
+    change(monkeypatch, "cellcolor.solvers.cpsat.painting", old, new)
+    assert not every_division_becomes_a_scheme(SMALL[name]), step

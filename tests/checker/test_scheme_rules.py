@@ -1,0 +1,262 @@
+"""The checker passes the schemes of the definition and nothing else, and needs every rule for it.
+
+Each rule of docs/semantics.md, section 3, is taken out of the checker once. Then
+:func:`test_just_the_schemes_of_the_definition` fails for the graph that the rule is listed with.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+from functools import cache
+
+import holes
+import pytest
+from holes import Painted
+from mutants import change
+from rooms import BLUE, GREEN, RED, graph, hub, petal_cells
+
+from cellcolor.checker import division as checker
+from cellcolor.data.cells_and_edges import Cell
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Division
+
+BOTH = RED, BLUE
+ALL = RED, BLUE, GREEN
+
+GRAPHS = {
+    # Blue is joinable on one of two edges.
+    "pair": graph((BOTH, (1, 2)), (BOTH, (-2, -1)), cracks={1: (RED,)}),
+    "red cell": graph((BOTH, (1,)), ((RED,), (-1,))),
+    "in turn": hub(RED, BLUE, RED, BLUE),
+    "two and two": hub(RED, RED, BLUE, BLUE),
+    "all alike": hub(RED, RED, RED, (RED, BLUE)),
+    "crossing-zeros": graph(
+        (BOTH, (1, 2, 3, 4, 5, 6)),
+        *(((RED,), (-3, -2)), ((BLUE,), (-5, -4)), ((RED,), (-1,)), ((BLUE,), (-6,))),
+    ),
+    # Two red sub-cells, the first and the last around a cell, are joined by way of another cell.
+    "round the end": graph(
+        (BOTH, (1, 2, 3, 4, 5, 6)),
+        *(((RED,), (-1, -6)), ((RED,), (-2,)), ((BLUE,), (-3,)), ((BLUE,), (-4,)), ((RED,), (-5,))),
+    ),
+    "two loops": graph((BOTH, (1, 2), (3, 4)), *petal_cells(RED, RED, RED, RED)),
+    "one in a hole": graph(
+        (BOTH, (1, 2, 3, 4), (5,)), *petal_cells(RED, RED, BLUE, BLUE, (RED, BLUE))
+    ),
+    "all alike, one in a hole": graph(
+        (BOTH, (1, 2, 3, 4), (5,)), *petal_cells(RED, RED, RED, RED, (RED, BLUE))
+    ),
+    # Darts 3 and 4 need not be joined. Then 3, the last of a loop, shows red, and 4, the first of
+    # the other, blue.
+    "last and first": graph(
+        (BOTH, (1, 2, 3), (4, 5, 6)),
+        *(((RED,), (-1,)), ((BLUE,), (-2, -3)), ((RED,), (-4, -5)), ((BLUE,), (-6,))),
+    ),
+    "bands": graph((ALL, (1, 2, 3), (4, 5, 6)), *petal_cells(RED, BLUE, GREEN, RED, BLUE, GREEN)),
+}
+
+
+def consistent(instance: Instance) -> Iterator[tuple[Painted, ...]]:
+    """Every choice of edges in state 1, of their colors, and of sub-cells, crossing or not."""
+    live = sorted(instance.live_edges)
+    for colors in itertools.product(*([None, *sorted(instance.joinable(edge))] for edge in live)):
+        color = {edge: own for edge, own in zip(live, colors, strict=True) if own is not None}
+        yield from itertools.product(
+            *(list(divisions_of(instance, cell, color)) for cell in instance.cells)
+        )
+
+
+def divisions_of(instance: Instance, cell: Cell, color: dict[int, int]) -> Iterator[Painted]:
+    joined = [d for loop in holes.live_loops(instance, cell) for d in loop if abs(d) in color]
+    if not joined:
+        yield from (frozenset([(own, frozenset[int]())]) for own in cell.colors)
+        return
+    classes = [[d for d in joined if color[abs(d)] == own] for own in sorted(set(color.values()))]
+    for chosen in itertools.product(*(holes.set_partitions(own) for own in classes if own)):
+        blocks = [block for partition in chosen for block in partition]
+        yield frozenset((color[abs(block[0])], frozenset(block)) for block in blocks)
+
+
+def anything(instance: Instance) -> Iterator[tuple[Painted, ...]]:
+    """Any darts in any sub-cells of any colors, also in two or in none: for tiny graphs."""
+    every = range(len(instance.colors))
+    options = []
+    for cell in instance.cells:
+        darts = [dart for loop in cell.loops for dart in loop]
+        own: list[Painted] = []
+        for size in range(len(darts) + 1):
+            for joined in itertools.combinations(darts, size):
+                for blocks in holes.set_partitions(joined):
+                    for more in ([], [[]], [[], []], blocks[:1]):
+                        parts = [*blocks, *more]
+                        for colors in itertools.product(every, repeat=len(parts)):
+                            pairs = zip(colors, map(frozenset, parts), strict=True)
+                            own.append(frozenset(pairs))
+        options.append([painted for painted in dict.fromkeys(own) if painted])
+    yield from itertools.product(*options)
+
+
+def is_legal(instance: Instance, painting: Sequence[Painted]) -> bool:
+    """Rules 1 and 3, and whether sub-cells do not cross."""
+    if any(
+        one & other for cell in painting for (_, one), (_, other) in itertools.combinations(cell, 2)
+    ):
+        return False
+    color = {dart: own for cell in painting for own, block in cell for dart in block}
+    return all(
+        color.get(-dart) == own and own in instance.joinable(dart) for dart, own in color.items()
+    ) and all(
+        all(own in cell.colors for own, _ in painted)
+        and (len(painted) == 1 or all(block for _, block in painted))
+        and holes.can_be_drawn(
+            holes.live_loops(instance, cell), frozenset(block for _, block in painted if block)
+        )
+        for cell, painted in zip(instance.cells, painting, strict=True)
+    )
+
+
+@cache
+def defined(name: str) -> list[tuple[Division, bool]]:
+    """Divisions of a graph, and whether each is a scheme."""
+    instance = GRAPHS[name]
+    drawn = anything if len(instance.cells) < 3 else consistent
+    return [
+        (holes.as_division(one), is_legal(instance, one) and holes.is_scheme(instance, one))
+        for one in drawn(instance)
+    ]
+
+
+def as_defined(name: str) -> bool:
+    """Whether the checker passes just these schemes; that it gives up is no verdict."""
+    try:
+        return all(
+            checker.check_scheme(GRAPHS[name], division).is_scheme == expected
+            for division, expected in defined(name)
+        )
+    except KeyError:  # of a checker without one of its rules
+        return False
+
+
+@pytest.mark.parametrize("name", GRAPHS)
+def test_just_the_schemes_of_the_definition(name: str) -> None:
+    assert {expected for _, expected in defined(name)} == {True, False}
+    assert as_defined(name)
+
+
+DIVISION = "cellcolor.checker.division"
+RULES = "cellcolor.checker.scheme_rules"
+
+TAKEN_OUT = [
+    # A rule, where it is, the source with and without it, and the graph whose test falls.
+    ("1, both sides", DIVISION, "if twin(dart) not in color:", "if False:", "red cell"),
+    ("2, no crossing", RULES, "if remaining[stack[-1]]:", "if False:", "in turn"),
+    ("2, drawable", DIVISION, "if not can_be_drawn(", "if not (lambda loops: True)(", "bands"),
+    ("2, two darts", RULES, "if count < 2), None)", "if False), None)", "two and two"),
+    ("2, or one block", RULES, "if len(cell.colors) < 2:", "if False:", "two and two"),
+    ("3, one color", DIVISION, "elif color[twin(dart)] != own:", "elif False:", "pair"),
+    ("3, joinable", DIVISION, "elif own not in joinable(dart):", "elif False:", "pair"),
+    (
+        "3, a color of the cell",
+        DIVISION,
+        "if sub.color not in instance.cells[cell.id].colors:",
+        "if False:",
+        "red cell",
+    ),
+    (
+        "4",
+        RULES,
+        "if one != other and cell.colors[one] == cell.colors[other]:",
+        "if False:",
+        "all alike",
+    ),
+    (
+        "4, the last dart and the first",
+        RULES,
+        "in zip(joined, joined[1:] + joined[:1], strict=True):",
+        "in zip(joined, joined[1:], strict=False):",
+        "round the end",
+    ),
+    (
+        "4, on each loop",
+        DIVISION,
+        "_not_canonical(its.id, its.whole, its.loops)",
+        "_not_canonical(its.id, its.whole, [])",
+        "all alike, one in a hole",
+    ),
+    (
+        "4, no chain",
+        RULES,
+        "if colors[one] == colors[other] and group[one] != group[other]",
+        "if False",
+        "two loops",
+    ),
+    ("5", RULES, "return _contradiction(clauses)", "return None", "two and two"),
+    (
+        "5, first the color before, then that after",
+        RULES,
+        "clauses += [((one, False), (other, True)) for one, other in pairwise(run)]",
+        "pass",
+        "crossing-zeros",
+    ),
+    ("5, joinable", RULES, "and color in joinable(dart):", "and True:", "pair"),
+    (
+        "5, the color before",
+        RULES,
+        "dict.fromkeys(run, (before, after))",
+        "dict.fromkeys(run, (after, after))",
+        "crossing-zeros",
+    ),
+    (
+        "5, the color after",
+        RULES,
+        "dict.fromkeys(run, (before, after))",
+        "dict.fromkeys(run, (before, before))",
+        "crossing-zeros",
+    ),
+    (
+        "5, the gap that the list begins in",
+        RULES,
+        "[*cell.darts[start + 1 :], *cell.darts[: start + 1]]",
+        "cell.darts[start + 1 :]",
+        "two and two",
+    ),
+    (
+        "5, no dart in state 1",
+        RULES,
+        "if cell.darts:\n            yield",
+        "if False:\n            yield",
+        "red cell",
+    ),
+    (
+        "5, loop by loop",
+        RULES,
+        "settled.append(loop)",
+        "settled.append(cell.whole)",
+        "last and first",
+    ),
+    (
+        "5, a loop without darts in state 1 shows a color",
+        RULES,
+        "if found is not None or not open_loops:",
+        "if True:",
+        "one in a hole",
+    ),
+    (
+        "5, that of any block",
+        RULES,
+        "open_loops.append((loop, colors))",
+        "open_loops.append((loop, colors[:1]))",
+        "one in a hole",
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ("rule", "module", "old", "new", "name"), TAKEN_OUT, ids=[rule for rule, *_ in TAKEN_OUT]
+)
+def test_every_rule_is_needed(
+    rule: str, module: str, old: str, new: str, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    change(monkeypatch, module, old, new)
+    assert not as_defined(name), rule
