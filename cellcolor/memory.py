@@ -15,12 +15,9 @@ from numpy.typing import NDArray
 
 from cellcolor.errors import TooLarge
 
-MEMORY = 64_000_000
-"""Bytes that the temporaries of one step may take at a time, in each process. Steps that call
-others have theirs beside those of the others."""
-
-CACHE = 8_000_000
-"""The same of steps that go over the same arrays many times: these stay near the processor."""
+MEMORY = 16_000_000
+"""Bytes that the temporaries of one step may take at a time, in each process: so few that they stay
+near the processor. Steps that call others have theirs beside those of the others."""
 
 
 def at_once(bytes_each: int) -> int:
@@ -30,12 +27,8 @@ def at_once(bytes_each: int) -> int:
 
 def chunks(count: int, bytes_each: int) -> Iterator[slice]:
     """Parts of a list of ``count`` things, each of which fits into ``MEMORY``."""
-    return _parts(count, at_once(bytes_each))
-
-
-def cached(count: int, bytes_each: int) -> Iterator[slice]:
-    """Parts of a list of ``count`` things, each of which fits into ``CACHE``."""
-    return _parts(count, max(1, CACHE // max(1, bytes_each)))
+    most = at_once(bytes_each)
+    return (slice(first, min(first + most, count)) for first in range(0, count, most))
 
 
 def batches(sizes: NDArray[np.int64], bytes_each: int) -> Iterator[slice]:
@@ -49,10 +42,6 @@ def batches(sizes: NDArray[np.int64], bytes_each: int) -> Iterator[slice]:
         last = max(first + 1, int(np.searchsorted(total, before + most, side="right")))
         yield slice(first, last)
         first = last
-
-
-def _parts(count: int, most: int) -> Iterator[slice]:
-    return (slice(first, min(first + most, count)) for first in range(0, count, most))
 
 
 def check_memory(needed: int, what: str) -> None:

@@ -12,7 +12,7 @@ from library import PAPER
 
 pytestmark = pytest.mark.second
 
-FRONTEND = {"cellcolor.frontend", "pinocchio", "trimesh", "fcl", "coal"}
+FRONTEND = {"cellcolor.frontend", "pinocchio", "trimesh", "fcl", "coal", "igl"}
 HEAVY = FRONTEND | {"ortools", "networkx", "numpy", "pydantic"}
 
 RUN = """

@@ -21,6 +21,7 @@ _EXTRAS = {
     "plotly": "viz",
     "coal": "frontend",
     "fcl": "frontend",
+    "igl": "frontend",
     "pinocchio": "frontend",
     "scipy": "frontend",
     "trimesh": "frontend",
@@ -30,7 +31,7 @@ _EXTRAS = {
 }
 DISTRIBUTIONS = (
     *("click", "networkx", "numpy", "ortools", "pydantic", "rich"),
-    *("pin", "python-fcl", "scipy", "trimesh", "EAIK", "potpourri3d", "mcap"),
+    *("pin", "python-fcl", "libigl", "scipy", "trimesh", "EAIK", "potpourri3d", "mcap"),
     *("gpytoolbox", "matplotlib", "plotly"),
     *("clingo", "highspy", "pychoco", "pyscipopt", "python-sat", "dask", "distributed"),
 )

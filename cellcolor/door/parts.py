@@ -17,7 +17,7 @@ from cellcolor.files.paths import path_of
 
 if TYPE_CHECKING:
     from cellcolor.frontend.parts.inspection import Inspection
-    from cellcolor.frontend.parts.repaired import RepairedPart
+    from cellcolor.frontend.parts.repairing import RepairedPart
 
 Telling = Callable[[str], None]
 
@@ -81,8 +81,7 @@ def repair(
     name, file = _name(part)
     with naming(file), extras_for(name):
         from cellcolor.frontend.parts.mesh_file import UNITS
-        from cellcolor.frontend.parts.repaired import repair_mesh
-        from cellcolor.frontend.parts.repairing import LEAST_SHARE
+        from cellcolor.frontend.parts.repairing import LEAST_SHARE, repair_mesh
 
         vertices, faces = _mesh(part, deadline, tell)
         scale = UNITS[_unit(vertices, unit)]

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from cellcolor.motion.scene_painting import ScenePainting
     from cellcolor.pictures.report_page.content import AnsweredScene, Answers
 
-_NEEDED = ("pinocchio", "fcl", "trimesh", "scipy", "potpourri3d")
+_NEEDED = ("pinocchio", "fcl", "igl", "trimesh", "scipy", "potpourri3d")
 _FOR_SOLVING = 0.5  # share of the time left then; a proof can take any time
 _QUESTIONS = ("tradeoff", "explain", "place", "setups")  # that a plan's page can answer besides
 _MOVED = 0.1  # m; how far the question ``place`` moves the part along x and y

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 _FLANGES = ("tool0", "flange", "ee_link", "wrist_3_link", "tool_flange")
 _FAMILIES = ("ur", "eaik", "offset-wrist")  # the second says most about an arm that fits none
-_NEEDED = ("pinocchio", "fcl", "trimesh", "scipy")
+_NEEDED = ("pinocchio", "fcl", "igl", "trimesh", "scipy")
 _JOINTS, _ACCELERATION = 6, 5.0  # rad/s^2, which most arms of a meter can
 _ALONG = 1e-3  # rad; an axis so near to another one is along it
 _AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
@@ -274,8 +274,8 @@ def part_keys_of(mesh: Path, folder: Path, looked: Inspection) -> dict[str, str]
     """
     from cellcolor.frontend.parts.mesh_file import UNITS
 
-    if looked.refusal is not None:
-        raise InputError(str(mesh), None, looked.refusal)
+    if looked.refusal_after_repair is not None:
+        raise InputError(str(mesh), None, looked.refusal_after_repair)
     return {
         "name": json.dumps(mesh.stem),
         "part": json.dumps(_relative(mesh, folder)),

@@ -23,7 +23,7 @@ from cellcolor.frontend.contact.collision import body_ends
 from cellcolor.frontend.contact.solids import Solid, mesh_solid
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_units
-from cellcolor.frontend.parts.mesh_facts import note_on_crossings
+from cellcolor.frontend.parts.inspection import note_on_crossings
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.always_touching import always_touching, check_capsules
@@ -171,7 +171,7 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     judge = Judge(workplace, scene.validity_test)
     notes = arm.robot.warnings + notes_on_units(scene, arm.kinematics.reach)
     if covered.faceted:  # a shape is made without
-        notes += note_on_crossings(covered.mesh, deadline)
+        notes += note_on_crossings(covered.mesh)
     if setup.constraints.collision:
         home = None if setup.motion is None else setup.motion.home
         with naming(setup.file):

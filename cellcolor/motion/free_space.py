@@ -13,7 +13,7 @@ from cellcolor.frontend.arm.robot import Robot, wider, wider_body
 from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.always_touching import always_touching
-from cellcolor.memory import cached
+from cellcolor.memory import chunks
 from cellcolor.motion.following import joint_space
 
 _TOUCHING = 0.001  # m; so far the tip of a tool that leaves the object may be in it
@@ -101,7 +101,7 @@ class FreeSpace:
         """Which of them touch nothing, whatever the limits, (k,)."""
         clear = np.ones(len(configurations), dtype=bool)
         each = bytes_of_poses(self._place.robot.joints)
-        for rows in cached(len(configurations) if self._on else 0, each):
+        for rows in chunks(len(configurations) if self._on else 0, each):
             clear[rows] = ~self._touching(configurations[rows])
         return clear
 

@@ -21,7 +21,8 @@ from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import labelled
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
-from cellcolor.frontend.parts.remeshing import fold_angle, folds, length_for, remeshed
+from cellcolor.frontend.parts.remeshing import length_for, remeshed
+from cellcolor.frontend.parts.unfolding import fold_angle, folds
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.stage_clock import StageClock
@@ -143,16 +144,16 @@ def coarse_scene(scene: Scene, vertices: int, deadline: Deadline) -> Scene:
         solid = scene.solid_object or scene.object
         return scene.varied(object={"target_vertices": vertices}, collision_object=solid)
     angle = fold_angle(surface.mesh)
-    own = len(folds(surface.vertices, surface.faces, angle, deadline))
+    own = len(folds(surface.vertices, surface.faces, angle))
     area, wanted = float(surface.vertex_areas().sum()), vertices
     while wanted * _FINE_ENOUGH < len(surface.vertices):
         length = length_for(area, wanted)
         wanted = math.ceil(wanted * _FINE_ENOUGH)
         try:
-            points, faces, _, _ = remeshed(surface.vertices, surface.faces, length, deadline)
+            points, faces, _ = remeshed(surface.vertices, surface.faces, length, deadline)
         except InputError:
             continue  # torn, for one
-        if len(folds(points, faces, angle, deadline)) <= own:
+        if len(folds(points, faces, angle)) <= own:
             solid = scene.solid_object or scene.object
             return scene.varied(cover=None).with_object((points, faces), solid)
     return scene

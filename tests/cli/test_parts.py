@@ -49,7 +49,7 @@ def test_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["inspect", str(file), "--unit", "in", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["high_m"] == pytest.approx([2.54, 1.27, 0.762])
     for unit, meters in (("cm", "0.01"), ("in", "0.0254"), ("mm", "0.001"), ("m", "1.0")):
-        looked = replace(cellcolor.inspect(file, unit=unit), refusal=None)
+        looked = replace(cellcolor.inspect(file, unit=unit), refusal_after_repair=None)
         assert part_keys_of(file, tmp_path, looked)["meters_per_unit"] == meters
 
 
@@ -115,7 +115,7 @@ def test_values_in_python() -> None:
     """What has vertices and faces is taken as well; units are asked for where they are open."""
     vertices, faces = DIRTY["inverted"]()
     found = cellcolor.inspect((vertices, faces))
-    assert found.facts.inside_out == 1 and found.name == "part"
+    assert found.inside_out == 1 and found.name == "part"
     made = cellcolor.repair((vertices * 40, faces), unit="mm")
     assert made.meters_per_unit == 0.001
     with pytest.raises(cellcolor.InputError, match="could be meters as well") as caught:

@@ -96,7 +96,7 @@ PUBLIC = [
 ]
 """Whoever changes this list changes what others rely on."""
 
-FRONTEND = {"pinocchio", "trimesh", "fcl", "coal", "scipy", "cellcolor.frontend"}
+FRONTEND = {"pinocchio", "trimesh", "fcl", "coal", "igl", "scipy", "cellcolor.frontend"}
 PICTURES = {"plotly", "matplotlib", "cellcolor.pictures"}
 PACKAGE = Path(cellcolor.__file__).parent
 

@@ -128,9 +128,8 @@ def fine_scene():
 @pytest.mark.second
 def test_the_same_surface_to_the_last_byte(fine_scene, monkeypatch):
     # So small that this surface has many of each kind of part.
-    monkeypatch.setattr(memory, "CACHE", 300_000)
+    monkeypatch.setattr(memory, "MEMORY", 300_000)
     monkeypatch.setattr(validity, "_PAYS", 1)
-    monkeypatch.setattr(memory, "MEMORY", 1_000_000)
     shares = []
 
     def noted(work, parts, at_least=1):
@@ -150,7 +149,7 @@ def test_the_same_surface_to_the_last_byte(fine_scene, monkeypatch):
 def test_a_time_out_in_several_processes(fine_scene, monkeypatch):
     """It comes while candidates are judged, shared out, and not before."""
     place = prepare(fine_scene).workplace
-    monkeypatch.setattr(memory, "CACHE", 300_000)
+    monkeypatch.setattr(memory, "MEMORY", 300_000)
     monkeypatch.setattr(validity, "_PAYS", 1)
     begun, fork = [], forked._forked
 
@@ -169,7 +168,7 @@ import os, sys, time
 os.sched_getaffinity = lambda _process: {0, 1, 2}
 from cellcolor import memory
 from cellcolor.frontend.reach import validity
-memory.CACHE, validity._PAYS, judged = 300_000, 1, validity.Judge._judged
+memory.MEMORY, validity._PAYS, judged = 300_000, 1, validity.Judge._judged
 def slowly(judge, *given):
     time.sleep(1)
     return judged(judge, *given)

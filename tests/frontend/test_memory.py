@@ -92,7 +92,6 @@ def test_steps_with_configurations(arm: str, step: str, monkeypatch: pytest.Monk
     work = dict(of_arm(arm))[step]
     whole = work()
     monkeypatch.setattr(memory, "MEMORY", SMALL)
-    monkeypatch.setattr(memory, "CACHE", SMALL)
     # What solves a calibrated arm works in parts within the parts of who asks.
     deep = 2 if step in ("inverse", "follow") else 1
     assert temporary(work) <= deep * SMALL
@@ -220,7 +219,6 @@ def test_a_whole_build(arm: str, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = prepared(arm).scene.varied(object={"target_vertices": 1_000})
     monkeypatch.setattr("cellcolor.frontend.forked._cores", lambda: 1)
     monkeypatch.setattr(memory, "MEMORY", SMALL)
-    monkeypatch.setattr(memory, "CACHE", SMALL)
     vertices = 1_000
     slots, joints, points = 8, 6, len(prepared(arm).judge.tracked_steps)
     # Of a solution: joints twice, determinant, reason, color, bodies; three edges a vertex, each

@@ -45,7 +45,7 @@ def test_a_mesh_so_coarse_that_it_folds_is_not_used(monkeypatch: pytest.MonkeyPa
         if len(asked) < never_folded:
             beside = next(corner for face in coarse.faces if 0 in face for corner in face if corner)
             points[0] = 2 * points[beside] - points[0]  # over its neighbor
-        return points, np.array(coarse.faces), [], None
+        return points, np.array(coarse.faces), None
 
     monkeypatch.setattr(placing, "remeshed", remeshed)
     never_folded = 3

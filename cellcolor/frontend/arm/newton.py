@@ -20,7 +20,7 @@ from cellcolor.frontend.arm.kinematics import (
 )
 from cellcolor.frontend.arm.robot import Robot, TaskSpace
 from cellcolor.frontend.arm.signs import BRANCHES, Signs
-from cellcolor.memory import cached
+from cellcolor.memory import chunks
 
 REACHED = 1e-9  # m, and for the unit vector of the tool's direction: what counts as a solution
 _STEPS = 25
@@ -63,7 +63,7 @@ def polished(
     """
     found = np.full_like(starts, np.nan)
     there = np.nonzero(~np.isnan(starts[:, :, 0]))
-    for part in cached(len(there[0]), bytes_of_poses(robot.joints)):
+    for part in chunks(len(there[0]), bytes_of_poses(robot.joints)):
         pose, number = (index[part] for index in there)
         start = starts[pose, number]
         end = _polished(robot, start, points[pose], directions[pose], farthest, steps)
@@ -155,7 +155,7 @@ def merged(solutions: Array) -> Array:
     """
     packed = _packed(solutions, ~np.isnan(solutions[:, :, 0]))
     kept = ~np.isnan(packed[:, :, 0])
-    for rows in cached(len(packed), 32 * TASK_JOINTS * packed.shape[1]):
+    for rows in chunks(len(packed), 32 * TASK_JOINTS * packed.shape[1]):
         five, own = packed[rows, :, :TASK_JOINTS], kept[rows]
         for later in range(1, five.shape[1]):
             off = _largest_turn(five[:, :later] - five[:, later : later + 1])

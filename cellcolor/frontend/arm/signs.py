@@ -34,7 +34,7 @@ from cellcolor.frontend.arm.kinematics import (
     tip_jacobian,
 )
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.memory import cached
+from cellcolor.memory import chunks
 
 BRANCHES = tuple(
     f"shoulder-{shoulder} elbow-{elbow} wrist-{wrist}"
@@ -100,7 +100,7 @@ class Signs:
         """
         found = np.empty(len(configurations), dtype=np.intp)
         determinants = np.empty(len(configurations))
-        for rows in cached(len(found), bytes_of_poses(robot.joints)):
+        for rows in chunks(len(found), bytes_of_poses(robot.joints)):
             found[rows], determinants[rows] = self._branches(forward(robot, configurations[rows]))
         return found, determinants
 

@@ -1,144 +1,185 @@
-"""An inspected mesh: its facts and what a repair would do, as a value that prints itself."""
+"""An inspected mesh: what it has, what is wrong with it and where, and what a repair would do."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
+import igl
 import numpy as np
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
+from cellcolor.frontend.parts.mending import (
+    against_the_others,
+    border_groups,
+    crossing_pairs,
+    flat_faces,
+    in_words,
+    inside_out,
+    merged,
+    repeated_corners,
+    repeated_faces,
+    turned,
+)
 from cellcolor.frontend.parts.mesh import mesh_surface
-from cellcolor.frontend.parts.mesh_facts import FaultyPlaces, MeshFacts, facts_of
 from cellcolor.frontend.parts.mesh_file import UNITS, likely_unit
-from cellcolor.frontend.parts.repaired import check_known_size, in_words
-from cellcolor.frontend.parts.repairing import Mending, Telling, counted, mended
-from cellcolor.frontend.parts.surface import Faces
+from cellcolor.frontend.parts.repairing import Telling, counted, mended
+from cellcolor.frontend.parts.surface import SHARP, Faces
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 _SHOWN = 3  # places of one fault in a printed inspection
 _STORED = 100  # places of one fault in a JSON document
+Place = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Hole:
+    """Connected border edges: their length in m, their number, the middle of their ends in m."""
+
+    length_m: float
+    edges: int
+    place: Place
+
+
+@dataclass(frozen=True)
+class Component:
+    """Faces connected by edges; closed if each of their edges has two faces."""
+
+    faces: int
+    area_m2: float
+    closed: bool
 
 
 @dataclass(frozen=True, eq=False)
 class Inspection:
-    """An inspected mesh.
+    """A mesh in numbers; places in m.
 
     Attributes:
         name: of its file, or what it is.
         unit: of its coordinates: ``m``, ``mm``, ``cm`` or ``in``.
         unit_reason: why; for a given unit, that it was given.
-        facts: what it has and what is wrong with it.
+        triangles, vertices: how many; vertices that no face has are not counted.
+        unused_vertices: those.
+        merged_vertices: how many are in one place with an earlier one.
+        low_m, high_m: corners of the bounding box.
+        area_m2: of all faces.
+        components: from the largest area to the smallest.
+        holes: from the longest border to the shortest.
+        non_manifold_edges, non_manifold_vertices: places of edges with more than two faces, and of
+            vertices on no such edge whose faces form several fans.
+        duplicate_faces: how many have the corners of an earlier one.
+        flat_faces: how many have no area.
+        mixed_winding: how many faces wind against those around them.
+        one_sided: whether no winding fits, as on a Moebius strip.
+        inside_out: how many closed components have a negative volume.
+        crossings: places of pairs of faces that cross.
+        edge_lengths_m: least, lower quartile, median, upper quartile, greatest.
+        sharp_edges: how many, with faces that turn by 30 degrees or more.
+        sharp_length_m: of them.
+        genus: the number of handles of a manifold mesh; None for any other.
+        refusal: why a scene could not use the mesh as it is; None if it could.
         repairs: what a repair would change, without filling holes or remeshing.
-        refusal: why the mesh could not be used after that; None if it could.
-        vertices: (n, 3) in m.
-        faces: (m, 3).
+        refusal_after_repair: why the mesh could not be used after that; None if it could.
+        mesh: in m, as it was given.
+        faulty_faces: by the fault's name, corners (k, 3, 3) of faces, for pictures.
+        faulty_edges: by the fault's name, ends (k, 2, 3) of edges; of sharp ones too, no fault.
     """
 
     name: str
     unit: str
     unit_reason: str
-    facts: MeshFacts
-    repairs: tuple[str, ...]
+    triangles: int
+    vertices: int
+    unused_vertices: int
+    merged_vertices: int
+    low_m: Place
+    high_m: Place
+    area_m2: float
+    components: tuple[Component, ...]
+    holes: tuple[Hole, ...]
+    non_manifold_edges: tuple[Place, ...]
+    non_manifold_vertices: tuple[Place, ...]
+    duplicate_faces: int
+    flat_faces: int
+    mixed_winding: int
+    one_sided: bool
+    inside_out: int
+    crossings: tuple[Place, ...]
+    edge_lengths_m: tuple[float, ...]
+    sharp_edges: int
+    sharp_length_m: float
+    genus: int | None
     refusal: str | None
-    vertices: Array = field(repr=False)
-    faces: Faces = field(repr=False)
+    repairs: tuple[str, ...]
+    refusal_after_repair: str | None
+    mesh: TriangleMesh = field(repr=False)
+    faulty_faces: dict[str, Array] = field(repr=False)
+    faulty_edges: dict[str, Array] = field(repr=False)
 
     def to_dict(self) -> dict[str, Any]:
         """Everything except the mesh, JSON-able; the first hundred places of each kind."""
-        facts = asdict(
-            replace(self.facts, places=FaultyPlaces({}, {}, self.facts.places.sharp[:0]))
-        )
-        del facts["places"]
-        counted = ("components", "holes", "non_manifold_edges", "non_manifold_vertices")
-        for key in (*counted, "crossings"):
-            found = facts[key]
-            if found is not None:
-                facts[key] = {"count": len(found), "first": list(found[:_STORED])}
-        return {
-            "name": self.name,
-            "unit": self.unit,
-            "unit_reason": self.unit_reason,
-            **facts,
-            "repairs": list(self.repairs),
-            "refusal_after_repair": self.refusal,
-        }
+        found: dict[str, Any] = {}
+        for name in [one.name for one in fields(self) if one.repr]:
+            value = getattr(self, name)
+            if name in ("components", "holes"):
+                value = tuple(map(asdict, value))
+            if isinstance(value, tuple) and name.startswith(("comp", "holes", "non_", "cross")):
+                value = {"count": len(value), "first": list(value[:_STORED])}
+            found[name] = list(value) if isinstance(value, tuple) else value
+        return found
 
     def __str__(self) -> str:
-        facts = self.facts
-        size = " x ".join(
-            f"{high - low:.4g}" for low, high in zip(facts.low_m, facts.high_m, strict=True)
-        )
-        low = ", ".join(f"{x:.4g}" for x in facts.low_m)
-        edges = [f"{1e3 * length:.3g}" for length in facts.edge_lengths_m]
-        rows = [
-            ("triangles", f"{facts.triangles:,}, {facts.vertices:,} vertices"),
-            ("unit", f"{self.unit}: {self.unit_reason}"),
-            ("size", f"{size} m from ({low}) m, area {facts.area_m2:.4g} m^2"),
-            (
-                "edges",
-                f"{edges[0]} to {edges[4]} mm, quartiles {edges[1]}, {edges[2]}, {edges[3]} mm",
-            ),
-            ("sharp edges", self._sharp()),
-            ("components", self._components()),
-            ("genus", "of a manifold only" if facts.genus is None else f"{facts.genus}"),
-        ]
-        rows += [(name, text) for name, text in self._faults() if text]
-        ready = "yes" if facts.refusal is None else f"no: {facts.refusal}"
-        rows.append(("usable as it is", ready))
-        lines = [self.name, *(f"  {name:<16} {text}" for name, text in rows)]
-        lines += [
-            "  repair would",
-            *(f"    {change}" for change in self.repairs or ("change nothing",)),
-        ]
-        end = "usable" if self.refusal is None else f"still not usable: {self.refusal}"
-        return "\n".join([*lines, f"  and then it is {end}"])
-
-    def _sharp(self) -> str:
-        facts = self.facts
-        if not facts.sharp_edges:
-            return "none of 30 degrees or more"
-        return f"{facts.sharp_edges:,} of 30 degrees or more, {facts.sharp_length_m:.3g} m"
-
-    def _components(self) -> str:
-        first = ", ".join(
+        size = " x ".join(f"{b - a:.4g}" for a, b in zip(self.low_m, self.high_m, strict=True))
+        edges = [f"{1e3 * length:.3g}" for length in self.edge_lengths_m]
+        sharp = f"{self.sharp_edges:,} of 30 degrees or more, {self.sharp_length_m:.3g} m"
+        first = [
             f"{own.faces:,} faces {'closed' if own.closed else 'open'}"
-            for own in self.facts.components[:_SHOWN]
-        )
-        more = len(self.facts.components) - _SHOWN
-        return (
-            f"{len(self.facts.components):,}: {first}{f', and {more:,} more' if more > 0 else ''}"
+            for own in self.components[:_SHOWN]
+        ]
+        if len(self.components) > _SHOWN:
+            first.append(f"and {len(self.components) - _SHOWN:,} more")
+        rows = [
+            ("triangles", f"{self.triangles:,}, {self.vertices:,} vertices"),
+            ("unit", f"{self.unit}: {self.unit_reason}"),
+            ("size", f"{size} m from {_at(self.low_m)} m, area {self.area_m2:.4g} m^2"),
+            ("edges", f"{edges[0]} to {edges[4]} mm, quartiles {', '.join(edges[1:4])} mm"),
+            ("sharp edges", sharp if self.sharp_edges else "none of 30 degrees or more"),
+            ("components", f"{len(self.components):,}: {', '.join(first)}"),
+            ("genus", "of a manifold only" if self.genus is None else f"{self.genus}"),
+            *((name, text) for name, text in self._faults() if text),
+            ("usable as it is", "yes" if self.refusal is None else f"no: {self.refusal}"),
+        ]
+        repairs = self.repairs or ("change nothing",)
+        lines = [self.name, *(f"  {name:<16} {text}" for name, text in rows), "  repair would"]
+        lines += [f"    {change}" for change in repairs]
+        after = self.refusal_after_repair
+        return "\n".join(
+            [*lines, f"  and then it is {f'still not usable: {after}' if after else 'usable'}"]
         )
 
     def _faults(self) -> list[tuple[str, str]]:
-        facts = self.facts
-        holes = [f"{1e3 * hole.length_m:.3g} mm long at {_at(hole.place)}" for hole in facts.holes]
-        crossing = "not looked for: too many faces, or too uneven"
-        if facts.crossings is not None:
-            crossing = _listed("pair", list(map(_at, facts.crossings)))
+        holes = [f"{1e3 * hole.length_m:.3g} mm long at {_at(hole.place)}" for hole in self.holes]
+        edges, vertices, crossings = (
+            list(map(_at, places))
+            for places in (self.non_manifold_edges, self.non_manifold_vertices, self.crossings)
+        )
+        one_sided = "a component has no outside, as a Moebius strip" if self.one_sided else ""
         return [
             ("holes", _listed("border", holes)),
-            (
-                "non-manifold",
-                _listed("edge", list(map(_at, facts.non_manifold_edges)), " of 3 faces or more"),
-            ),
-            (
-                "non-manifold",
-                _listed("vertex", list(map(_at, facts.non_manifold_vertices)), " not manifold"),
-            ),
-            ("twins", _some(facts.merged_vertices, "vertex", "in the same place as another")),
-            ("unused", _some(facts.unused_vertices, "vertex", "without a face")),
-            ("duplicates", _some(facts.duplicate_faces, "face", "there twice")),
-            ("flat", _some(facts.flat_faces, "face", "without area")),
-            ("winding", _some(facts.mixed_winding, "face", "against those around")),
-            (
-                "one-sided",
-                "a component has no outside, as a Moebius strip" if facts.one_sided else "",
-            ),
-            ("inside out", _some(facts.inside_out, "closed component", "with a negative volume")),
-            ("crossings", crossing),
+            ("non-manifold", _listed("edge", edges, " of 3 faces or more")),
+            ("non-manifold", _listed("vertex", vertices, " not manifold")),
+            ("twins", _some(self.merged_vertices, "vertex", "in the same place as another")),
+            ("unused", _some(self.unused_vertices, "vertex", "without a face")),
+            ("duplicates", _some(self.duplicate_faces, "face", "there twice")),
+            ("flat", _some(self.flat_faces, "face", "without area")),
+            ("winding", _some(self.mixed_winding, "face", "against those around")),
+            ("one-sided", one_sided),
+            ("inside out", _some(self.inside_out, "closed component", "with a negative volume")),
+            ("crossings", _listed("pair", crossings)),
         ]
 
 
@@ -150,7 +191,10 @@ def inspect_mesh(
     deadline: Deadline = NEVER,
     tell: Telling = lambda _: None,
 ) -> Inspection:
-    """Inspect a mesh, and say what a repair would do.
+    """Inspect a mesh, whatever is wrong with it, and say what a repair would do.
+
+    Before topology is inspected, vertices in one place are merged, and duplicate faces and faces
+    without area left out, as a repair would do first.
 
     Args:
         name: of the file, or what it is.
@@ -163,7 +207,6 @@ def inspect_mesh(
         InputError: it cannot be looked through: coordinates that are not finite, a face of no
             vertex, no face with an area, too many faces, no such unit.
     """
-    check_known_size(len(faces))
     if unit is not None and unit not in UNITS:
         raise InputError(None, "unit", f"must be one of {', '.join(UNITS)}, is {unit!r}")
     if not len(faces):
@@ -173,21 +216,135 @@ def inspect_mesh(
         with np.errstate(invalid="ignore"):
             likely, reason = likely_unit(float(np.ptp(vertices, axis=0).max()))
         unit = likely or "m"
-    points = np.asarray(vertices, dtype=np.float64) * UNITS[unit]
+    whole = np.asarray(vertices, dtype=np.float64) * UNITS[unit]
     # First the repair: what makes it impossible makes an inspection impossible.
-    refusal, repairs = None, []
+    repairs: list[str] = []
     try:
-        made, new, changes = mended(points, faces, Mending(), deadline, tell)
-        repairs = [in_words(change) for change in changes]
-        mesh_surface(made, new, deadline=deadline)
+        made, new, repairs = mended(whole, faces, deadline=deadline, tell=tell)
+        after = _refusal(made, new, deadline)
     except InputError as error:
-        refusal = str(error)
-    facts = facts_of(points, faces, deadline, tell)
-    return Inspection(name, unit, reason, facts, tuple(repairs), refusal, points, faces)
+        after = str(error)
+    refusal = _refusal(whole, faces, deadline)
+    there = len(np.unique(faces))
+    points, clean = merged(whole, faces)
+    folded, twins = repeated_corners(clean), there - len(points)
+    clean = clean[~folded]
+    twice = repeated_faces(clean)
+    double, clean = clean[twice], clean[~twice]
+    flat = flat_faces(points, clean)
+    thin, clean = clean[flat], clean[~flat]
+    if not len(clean):
+        raise InputError(None, "faces", "none has an area")
+    deadline.check()
+    tell("looking at edges and components")
+    mesh = TriangleMesh(points, clean)
+    part = mesh.parts()
+    turn, one_sided = against_the_others(clean)
+    wrong = inside_out(TriangleMesh(points, turned(clean, turn)))
+    holes, sharp = _holes(mesh), mesh.sharp_edges(SHARP)
+    many = mesh.edges[mesh.triangles_at > 2]
+    split = np.flatnonzero(~igl.is_vertex_manifold(clean))
+    split = split[~np.isin(split, many)]
+    tell("looking for faces that cross")
+    deadline.check()
+    crossing = crossing_pairs(points, clean)
+    deadline.check()
+    # By Euler's formula: handles of all components together.
+    genus = (2 * (int(part.max()) + 1) - len(holes) - mesh.euler) // 2
+    return Inspection(
+        name=name,
+        unit=unit,
+        unit_reason=reason,
+        triangles=len(faces),
+        vertices=there,
+        unused_vertices=len(vertices) - there,
+        merged_vertices=twins,
+        low_m=tuple(points.min(axis=0).tolist()),
+        high_m=tuple(points.max(axis=0).tolist()),
+        area_m2=float(mesh.areas.sum()),
+        components=_components(part, mesh),
+        holes=holes,
+        non_manifold_edges=_places(points[many].mean(axis=1)),
+        non_manifold_vertices=_places(points[split]),
+        duplicate_faces=len(double),
+        flat_faces=len(thin) + int(folded.sum()),
+        mixed_winding=int(turn.sum()),
+        one_sided=bool(one_sided.any()),
+        inside_out=len(np.unique(part[wrong])),
+        crossings=_crossing_places(mesh, crossing),
+        edge_lengths_m=tuple(np.percentile(mesh.lengths, [0, 25, 50, 75, 100]).tolist()),
+        sharp_edges=len(sharp),
+        sharp_length_m=float(mesh.lengths[sharp].sum()),
+        genus=None if len(many) or len(split) else genus,
+        refusal=refusal,
+        repairs=tuple(repairs),
+        refusal_after_repair=after,
+        mesh=TriangleMesh(whole, faces),
+        faulty_faces={
+            "faces there twice": points[double],
+            "faces without area": points[thin],
+            "faces wound against their neighbors": points[clean[turn]],
+            "closed components inside out": points[clean[wrong]],
+            "faces that cross": points[clean[np.unique(crossing)]],
+        },
+        faulty_edges={
+            "holes and borders": points[mesh.edges[mesh.triangles_at == 1]],
+            "edges with more than two faces": points[many],
+            "sharp edges": points[mesh.edges[sharp]],
+        },
+    )
+
+
+def _refusal(vertices: Array, faces: Faces, deadline: Deadline) -> str | None:
+    try:
+        mesh_surface(vertices, faces, deadline=deadline)
+    except InputError as error:
+        return str(error)
+    return None
+
+
+def _places(points: Array) -> tuple[Place, ...]:
+    return tuple(map(tuple, points.tolist()))
+
+
+def _components(part: Index, mesh: TriangleMesh) -> tuple[Component, ...]:
+    sizes, areas = np.bincount(part), np.bincount(part, mesh.areas)
+    open_: Mask = (mesh.triangles_at[mesh.edge_of_side] != 2).any(axis=1)
+    opened = np.bincount(part, open_) > 0
+    order = np.argsort(-areas, kind="stable").tolist()
+    return tuple(Component(int(sizes[k]), float(areas[k]), not opened[k]) for k in order)
+
+
+def _holes(mesh: TriangleMesh) -> tuple[Hole, ...]:
+    border, group = border_groups(mesh)
+    number, total = np.bincount(group), np.bincount(group, mesh.lengths[border])
+    middles = mesh.points[mesh.edges[border]].mean(axis=1)
+    place = np.column_stack([np.bincount(group, axis) for axis in middles.T]) / number[:, None]
+    order = np.argsort(-total, kind="stable").tolist()
+    return tuple(Hole(float(total[k]), int(number[k]), tuple(place[k].tolist())) for k in order)
+
+
+def _crossing_places(mesh: TriangleMesh, pairs: Index) -> tuple[Place, ...]:
+    """The middles of the smaller face of each pair."""
+    smaller = np.take_along_axis(pairs, np.argmin(mesh.areas[pairs], axis=1)[:, None], axis=1)
+    return _places(mesh.points[mesh.corners[smaller[:, 0]]].mean(axis=1))
+
+
+def note_on_crossings(mesh: TriangleMesh) -> tuple[str, ...]:
+    """A sentence if faces cross: how many, and where."""
+    pairs = crossing_pairs(mesh.points, mesh.corners)
+    if not len(pairs):
+        return ()
+    place = _at(_crossing_places(mesh, pairs[:1])[0])
+    where = f"{'the first' if len(pairs) > 1 else 'it is'} at {place} m in the part's own frame"
+    return (
+        f"{count(len(pairs), 'pair')} of the part's faces cross, {where}: near there the tool "
+        "may be judged by the face that it is not on; cellcolor inspect lists such places",
+    )
 
 
 def _at(place: Sequence[float]) -> str:
-    return f"({', '.join(f'{x:.4g}' for x in place)})"
+    return in_words(np.array(place))
 
 
 def _listed(one: str, places: list[str], what: str = "") -> str:

@@ -16,7 +16,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import in_meters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.cleaning import (
+from cellcolor.frontend.parts.mending import (
     against_the_others,
     inside_out,
     merged,
@@ -120,7 +120,7 @@ def _repaired(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
     faces = faces[~repeated_corners(faces)]
     faces = faces[~repeated_faces(faces)]
     vertices, faces = used(vertices, without_flat(vertices, faces))
-    faces = turned(faces, against_the_others(TriangleMesh(vertices, faces))[0])
+    faces = turned(faces, against_the_others(faces)[0])
     return vertices, turned(faces, inside_out(TriangleMesh(vertices, faces)))
 
 

@@ -1,118 +1,245 @@
-"""Repairs of a mesh step by step, with a list of the changes."""
+"""A mesh repaired step by step, with a list of the changes, or the reason why it cannot be."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, field
+from typing import Any
 
 import numpy as np
 
-from cellcolor.arrays import Array, Mask
+from cellcolor.arrays import Array
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.cleaning import (
-    MOST_EDGES,
+from cellcolor.frontend.parts.mending import (
     against_the_others,
-    filling,
+    border_groups,
+    cut_apart,
+    filled,
     flat_faces,
+    in_words,
     inside_out,
     merged,
     repeated_corners,
     repeated_faces,
-    split,
     turned,
     used,
     without_flat,
 )
-from cellcolor.frontend.parts.mesh import check_corners, summed_normals
+from cellcolor.frontend.parts.mesh import check_corners, mesh_surface
+from cellcolor.frontend.parts.remeshing import Deviation, length_for, remeshed
 from cellcolor.frontend.parts.surface import Faces
+from cellcolor.frontend.sizes import MOST_VERTICES
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
+MOST_FACES = 3_000_000  # a kilobyte each
 LEAST_SHARE = 0.01
 """Components with less than this share of the largest one's area are dropped, if not asked."""
 
-_UPRIGHT = 1e-3  # summed normals of a vertex that are shorter nearly cancel out
+_SUGGESTED = 60_000  # vertices of a mesh that is too large, remeshed
 Telling = Callable[[str], None]
 
 
-@dataclass(frozen=True)
-class Change:
-    """One thing that a repair has changed.
+@dataclass(frozen=True, eq=False)
+class RepairedPart:
+    """A mesh that a scene can use, and the changes that made it so.
 
     Attributes:
-        what: a sentence.
-        area_lost, area_gained: in the square of the mesh's unit.
+        vertices: (n, 3) in the unit of the mesh that was repaired.
+        faces: (m, 3).
+        meters_per_unit: of the vertices.
+        changes: what was changed, in its order, with the area that it took or gave.
+        holes: how many borders are left.
+        area_before_m2, area_m2: of all faces.
+        deviation: in m, where the mesh was remeshed; None otherwise.
     """
 
-    what: str
-    area_lost: float = 0.0
-    area_gained: float = 0.0
+    vertices: Array = field(repr=False)
+    faces: Faces = field(repr=False)
+    meters_per_unit: float
+    changes: tuple[str, ...]
+    holes: int
+    area_before_m2: float
+    area_m2: float
+    deviation: Deviation | None
+
+    def to_obj(self) -> str:
+        """The mesh as Wavefront OBJ."""
+        rows = ["# repaired by cellcolor"]
+        rows += ["v {:.10g} {:.10g} {:.10g}".format(*point) for point in self.vertices.tolist()]
+        rows += ["f {} {} {}".format(*face) for face in (self.faces + 1).tolist()]
+        return "\n".join(rows) + "\n"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The report, all of it JSON-able; the mesh itself is not in it."""
+        off = self.deviation
+        return {
+            "vertices": len(self.vertices),
+            "triangles": len(self.faces),
+            "meters_per_unit": self.meters_per_unit,
+            "holes": self.holes,
+            "area_before_m2": self.area_before_m2,
+            "area_m2": self.area_m2,
+            "changes": list(self.changes),
+            "deviation": None
+            if off is None
+            else {f"{name}_m": far for name, far in asdict(off).items()},
+        }
+
+    def __str__(self) -> str:
+        lines = [*self.changes] or ["no change was needed"]
+        if self.deviation is not None:
+            lines.append(str(self.deviation))
+        left = count(self.holes, "border") if self.holes else "closed"
+        lines.append(
+            f"{len(self.vertices):,} vertices, {len(self.faces):,} triangles, {left}; "
+            f"area {self.area_m2:.4g} m^2, before {self.area_before_m2:.4g} m^2"
+        )
+        return "\n".join(lines)
 
 
-@dataclass(frozen=True)
-class Mending:
-    """Options of a repair, lengths in the mesh's unit.
+def repair_mesh(
+    vertices: Array,
+    faces: Faces,
+    meters_per_unit: float = 1.0,
+    fill_holes_m: float = 0.0,
+    least_share: float = LEAST_SHARE,
+    edge_length_m: float | None = None,
+    deadline: Deadline = NEVER,
+    tell: Telling = lambda _: None,
+) -> RepairedPart:
+    """Repair a mesh, remesh it on request, and check it like a scene's object.
 
-    Attributes:
-        longest_hole: holes with a border up to that length are filled.
+    Args:
+        vertices: (n, 3) in any unit.
+        faces: (m, 3).
+        meters_per_unit: of the vertices.
+        fill_holes_m: holes with a border up to that length are filled.
         least_share: components with less than this share of the largest one's area are dropped.
-    """
+        edge_length_m: wanted of all edges; None leaves them.
 
-    longest_hole: float = 0.0
-    least_share: float = LEAST_SHARE
+    Raises:
+        InputError: the mesh cannot be made good, or is too large; says why.
+        ModuleNotFoundError: it is to be remeshed, and gpytoolbox is not installed.
+    """
+    given = np.asarray(vertices, dtype=np.float64) * meters_per_unit
+    points, new, changes = mended(given, faces, fill_holes_m, least_share, deadline, tell)
+    deviation = None
+    if edge_length_m is not None:
+        was = len(points)
+        points, new, deviation = remeshed(points, new, edge_length_m, deadline, tell)
+        text = f"remeshed to edges of about {1e3 * edge_length_m:.3g} mm: {len(points):,} vertices"
+        changes.append(f"{text} instead of {was:,}")
+    tell("checking")
+    try:
+        mesh_surface(points, new, deadline=deadline)
+    except InputError as error:
+        message = f"cannot be repaired: {error.message}"
+        if len(points) > MOST_VERTICES:
+            length = length_for(_area_of(points, new), _SUGGESTED)
+            message += f"; --edge-length {length:.2g} would give about {_SUGGESTED:,}"
+        elif edge_length_m is not None:
+            message += "; remeshed to shorter edges it keeps more of its shape"
+        raise InputError(None, error.field, message) from error
+    return RepairedPart(
+        vertices=points / meters_per_unit,
+        faces=new,
+        meters_per_unit=meters_per_unit,
+        changes=tuple(changes),
+        holes=int(border_groups(TriangleMesh(points, new))[1].max(initial=-1)) + 1,
+        area_before_m2=_area_of(given, faces),
+        area_m2=_area_of(points, new),
+        deviation=deviation,
+    )
 
 
 def mended(
     vertices: Array,
     faces: Faces,
-    asked: Mending,
+    longest_hole: float = 0.0,
+    least_share: float = LEAST_SHARE,
     deadline: Deadline = NEVER,
     tell: Telling = lambda _: None,
-) -> tuple[Array, Faces, list[Change]]:
-    """A mesh without the faults that can be repaired; others may remain.
+) -> tuple[Array, Faces, list[str]]:
+    """A mesh without the faults that can be repaired, and what was changed; others may remain.
 
     In this order: vertices in one place are merged; duplicate faces and faces without area are
     dropped; the winding is made consistent; the mesh is cut apart where it is not manifold; small
-    components are dropped; the winding is made consistent between new neighbors;
-    holes are filled; closed components are turned outward.
+    components are dropped; the winding is made consistent between new neighbors; holes are filled;
+    closed components are turned outward. Lengths are in m.
 
     Raises:
-        InputError: coordinates that are not finite, a face of no vertex, nothing left.
+        InputError: coordinates that are not finite, a face of no vertex, too many faces, nothing
+            left; flat faces between others, a component without an outside; names the place.
     """
     _check(vertices, faces)
-    changes: list[Change] = []
+    changes: list[str] = []
 
     def step(name: str) -> None:
         deadline.check()
         tell(name)
 
+    def note(number: int, one: str, what: str, area: float = 0.0) -> None:
+        if number:
+            changes.append(f"{counted(number, one)} {what}" + (f" ({area:+.3g} m^2)" * bool(area)))
+
     step("merging vertices")
-    before = len(vertices)
     there = len(np.unique(faces))
+    note(len(vertices) - there, "vertex", "dropped that no face uses")
     vertices, faces = merged(vertices, faces)
-    _note(changes, before - there, "vertex", "dropped that no face uses")
-    _note(changes, there - len(vertices), "vertex", "merged with another in the same place")
+    note(there - len(vertices), "vertex", "merged with another in the same place")
     step("dropping useless faces")
-    vertices, faces = _without_useless(vertices, faces, changes)
+    folded = repeated_corners(faces)
+    note(int(folded.sum()), "face", "dropped: two corners in one place")
+    faces = faces[~folded]
+    twice = repeated_faces(faces)
+    area = _area_of(vertices, faces[twice])
+    note(int(twice.sum()), "face", "dropped: there twice", -area)
+    faces = faces[~twice]
+    flat = int(flat_faces(vertices, faces).sum())
+    if flat == len(faces):
+        raise InputError(None, "faces", "none is left that has an area and is no copy of another")
+    note(flat, "face", "dropped: without area")
+    vertices, faces = used(vertices, without_flat(vertices, faces))
     step("making the winding consistent")
-    faces = _wound(vertices, faces, changes, two_sided=True)
+    turn, one_sided = against_the_others(faces)
+    if one_sided.any():
+        place = in_words(vertices[faces[np.argmax(one_sided)]].mean(axis=0))
+        message = "lies in a one-sided component, like a Moebius strip: it has no outside"
+        raise InputError(None, f"faces near {place}", message)
+    note(int(turn.sum()), "face", "turned to wind like those around")
     step("cutting apart what is not manifold")
-    vertices, faces = _manifold(vertices, faces, changes)
+    before = len(vertices)
+    vertices, faces, moved = cut_apart(vertices, turned(faces, turn))
+    what = "added: the mesh cut apart where it was no manifold, and copies of a vertex moved by up"
+    note(len(vertices) - before, "vertex", f"{what} to {moved:.3g} m")
     step("dropping small components")
-    vertices, faces = _large(vertices, faces, asked.least_share, changes)
-    faces = _wound(vertices, faces, changes)
-    step("filling holes")
-    faces = _filled(vertices, faces, asked.longest_hole, changes, deadline)
+    mesh = TriangleMesh(vertices, faces)
+    part = mesh.parts()
+    areas = np.bincount(part, mesh.areas)
+    small = areas < least_share * areas.max()
+    what = f"dropped: each with less than {least_share:.3g} of the largest one's area"
+    note(int(small.sum()), "component", what, -float(areas[small].sum()))
+    vertices, faces = used(vertices, faces[~small[part]])
+    turn, _ = against_the_others(faces)
+    note(int(turn.sum()), "face", "turned to wind like those around")
+    faces = turned(faces, turn)
+    if longest_hole:
+        step("filling holes")
+        new, left = filled(vertices, faces, longest_hole)
+        added = np.concatenate([faces[:0], *new])
+        what = f"filled with {count(len(added), 'face')}"
+        note(len(new), "hole", what, _area_of(vertices, added))
+        note(left, "hole", "left: nothing fits in")
+        faces = np.concatenate([faces, added])
     # A component that was open till now has an inside and an outside now.
     step("turning closed components outward")
     mesh = TriangleMesh(vertices, faces)
     wrong = inside_out(mesh)
-    if wrong.any():
-        parts = count(len(np.unique(mesh.parts()[wrong])), "closed component")
-        changes.append(Change(f"{parts} turned outside out: {count(int(wrong.sum()), 'face')}"))
-        faces = turned(faces, wrong)
-    return vertices, faces, changes
+    parts = len(np.unique(mesh.parts()[wrong]))
+    note(parts, "closed component", f"turned outside out: {count(int(wrong.sum()), 'face')}")
+    return vertices, turned(faces, wrong), changes
 
 
 def _check(vertices: Array, faces: Faces) -> None:
@@ -123,6 +250,8 @@ def _check(vertices: Array, faces: Faces) -> None:
     check_corners(vertices, faces)
     if not len(faces):
         raise InputError(None, "faces", "there are none")
+    if len(faces) > MOST_FACES:
+        raise InputError(None, "faces", f"there are {len(faces):,}, at most {MOST_FACES:,} fit")
 
 
 def counted(number: int, one: str) -> str:
@@ -131,133 +260,5 @@ def counted(number: int, one: str) -> str:
     return f"{number:,} {one if number == 1 else several}"
 
 
-def _note(changes: list[Change], number: int, one: str, what: str) -> None:
-    if number:
-        changes.append(Change(f"{counted(number, one)} {what}"))
-
-
-def area_of(vertices: Array, faces: Faces) -> float:
-    """The area of all faces."""
+def _area_of(vertices: Array, faces: Faces) -> float:
     return float(TriangleMesh(vertices, faces).areas.sum())
-
-
-def _without_useless(vertices: Array, faces: Faces, changes: list[Change]) -> tuple[Array, Faces]:
-    folded = repeated_corners(faces)
-    _note(changes, int(folded.sum()), "face", "dropped: two corners in one place")
-    faces = faces[~folded]
-    twice = repeated_faces(faces)
-    if twice.any():
-        area = area_of(vertices, faces[twice])
-        changes.append(Change(f"{count(int(twice.sum()), 'face')} dropped: duplicates", area))
-    faces = faces[~twice]
-    flat = int(flat_faces(vertices, faces).sum())
-    if flat:
-        faces = without_flat(vertices, faces)
-        _note(changes, flat, "face", "dropped: without area; the face beside was parted instead")
-    if not len(faces):
-        raise InputError(None, "faces", "none is left that has an area and is no copy of another")
-    return used(vertices, faces)
-
-
-def _manifold(vertices: Array, faces: Faces, changes: list[Change]) -> tuple[Array, Faces]:
-    number = len(faces)
-    area = area_of(vertices, faces)
-    while True:
-        parted, renumbered, moved = split(vertices, faces)
-        stuck = _stuck(parted, renumbered)
-        if not stuck.any():
-            break
-        vertices, faces = used(vertices, faces[~stuck])
-    before = area_of(vertices, faces)
-    if number > len(faces):
-        text = f"{count(number - len(faces), 'face')} dropped: in the way on edges with three faces"
-        changes.append(Change(f"{text} and more", area - before))
-    if len(parted) > len(vertices):
-        copies = len(parted) - len(vertices)
-        text = (
-            f"{counted(copies, 'vertex')} added: the mesh cut apart where it was no manifold, "
-            f"and copies of a vertex moved by up to {moved:.3g}"
-        )
-        changed = area_of(parted, renumbered) - before
-        changes.append(Change(text, max(-changed, 0.0), max(changed, 0.0)))
-    return parted, renumbered
-
-
-def _stuck(vertices: Array, faces: Faces) -> Mask:
-    """The smallest face (m,) on each edge that could not be cut apart: its ends are connected."""
-    mesh = TriangleMesh(vertices, faces)
-    (edges, sides), of_side, area = mesh.pairs, mesh.edge_of_side, mesh.areas[:, None]
-    ascending = mesh.ascending.ravel()
-    bad = mesh.triangles_at > 2
-    bad[edges[ascending[sides[:, 0]] == ascending[sides[:, 1]]]] = True
-    smallest = np.full(len(bad), np.inf)
-    np.minimum.at(smallest, of_side, area)
-    return np.asarray((bad[of_side] & (area <= smallest[of_side])).any(axis=1))
-
-
-def _large(
-    vertices: Array, faces: Faces, least: float, changes: list[Change]
-) -> tuple[Array, Faces]:
-    mesh = TriangleMesh(vertices, faces)
-    part = mesh.parts()
-    area = np.bincount(part, mesh.areas)
-    small = area < least * area.max()
-    if small.any():
-        gone = float(area[small].sum())
-        text = f"{count(int(small.sum()), 'component')} dropped: each with less than {least:.3g} of"
-        changes.append(Change(f"{text} the largest one's area", gone))
-    return used(vertices, faces[~small[part]])
-
-
-def _wound(vertices: Array, faces: Faces, changes: list[Change], two_sided: bool = False) -> Faces:
-    """Faces that wind like their neighbors; refused if they have to be two-sided and are not."""
-    turn, one_sided = against_the_others(TriangleMesh(vertices, faces))
-    if two_sided and one_sided.any():
-        face = int(np.argmax(one_sided))
-        message = "lies in a one-sided component, like a Moebius strip: it has no outside"
-        place = ", ".join(f"{x:.4g}" for x in vertices[faces[face]].mean(axis=0))
-        raise InputError(None, f"faces near ({place})", message)
-    _note(changes, int(turn.sum()), "face", "turned to wind like those around")
-    return turned(faces, turn)
-
-
-def _filled(
-    vertices: Array, faces: Faces, longest: float, changes: list[Change], deadline: Deadline
-) -> Faces:
-    if not longest:
-        return faces
-    mesh = TriangleMesh(vertices, faces)
-    edges = {(i, j) for i, j in mesh.edges.tolist()}
-    added: list[Faces] = []
-    left = 0
-    for loop in mesh.border_loops():
-        deadline.check()
-        points = vertices[loop]
-        length = float(np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1).sum())
-        if length > longest:
-            continue
-        new = filling(vertices, loop, edges) if len(loop) <= MOST_EDGES else None
-        if new is None:
-            left += 1
-            continue
-        added.append(new)
-        edges |= {(i, j) for i, j in TriangleMesh(vertices, new).edges.tolist()}
-    if added:
-        fitting = _without_folds(vertices, faces, added)
-        left += len(added) - len(fitting)
-        added = fitting
-    if added:
-        new = np.concatenate(added)
-        area = area_of(vertices, new)
-        text = f"{count(len(added), 'hole')} filled with {count(len(new), 'face')}"
-        changes.append(Change(text, 0.0, area))
-        faces = np.concatenate([faces, new])
-    _note(changes, left, "hole", f"left: more than {MOST_EDGES} edges, or nothing fits in")
-    return faces
-
-
-def _without_folds(vertices: Array, faces: Faces, added: list[Faces]) -> list[Faces]:
-    """Fillings of holes but those that fold back onto the faces around, as in a slit."""
-    normals = summed_normals(TriangleMesh(vertices, np.concatenate([faces, *added])))
-    folded = np.linalg.norm(normals, axis=1) < _UPRIGHT
-    return [new for new in added if not folded[new].any()]

@@ -23,7 +23,7 @@ from cellcolor.frontend.reach.validity_tests import (
     ValidityTest,
     Workplace,
 )
-from cellcolor.memory import cached, check_memory
+from cellcolor.memory import check_memory, chunks
 
 NO_SOLUTION = 1
 """The code where a branch does not reach the pose, so that there is nothing to test."""
@@ -148,7 +148,7 @@ class Judge:
         """
         count = len(configurations)
         points, joints = len(self.tracked_steps), configurations.shape[1]
-        parts = list(cached(count, bytes_of_poses(joints) + 160 * points))
+        parts = list(chunks(count, bytes_of_poses(joints) + 160 * points))
         # Of millions the ends of all bodies are a gigabyte: there is to be no second copy.
         # A solid has four times the points of a capsule, which single precision makes up for: a
         # tenth of a micrometer does not matter to how far bodies move.

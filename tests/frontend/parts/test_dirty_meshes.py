@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +14,8 @@ from shipped import shipped
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.inspection import inspect_mesh
 from cellcolor.frontend.parts.mesh import mesh_surface
-from cellcolor.frontend.parts.mesh_file import read_mesh
-from cellcolor.frontend.parts.repaired import repair_mesh
+from cellcolor.frontend.parts.mesh_file import load_mesh, read_mesh
+from cellcolor.frontend.parts.repairing import repair_mesh
 from cellcolor.frontend.prepared import prepare
 
 # What the makers have done, and no other fault; counts are those of their docstrings.
@@ -30,7 +31,7 @@ FOUND: dict[str, dict[str, object]] = {
     "inverted": {"inside_out": 1},
 }
 SMALL = {name: make for name, make in DIRTY.items() if name != "million"}
-CLOSED_AREA = {"duplicates": 0.076, "millimeters": 0.076, "needles": 0.076, "crossing": 0.152}
+CLOSED_AREA = {"duplicates": 0.076, "millimeters": 0.076, "crossing": 0.152}
 
 
 def number(value: object) -> object:
@@ -39,7 +40,7 @@ def number(value: object) -> object:
 
 @pytest.mark.parametrize("name", SMALL)
 def test_what_is_wrong_is_found(name: str) -> None:
-    facts = inspect_mesh(name, *SMALL[name]()).facts
+    facts = inspect_mesh(name, *SMALL[name]())
     for key, expected in FOUND[name].items():
         assert number(getattr(facts, key)) == expected, key
     faults = ("duplicate_faces", "mixed_winding", "inside_out", "non_manifold_edges")
@@ -54,8 +55,7 @@ def test_what_is_wrong_is_found(name: str) -> None:
 def test_a_scene_says_where_faces_cross() -> None:
     """The first place is one that the inspection lists; a part without such faces has no note."""
     vertices, faces = DIRTY["crossing"]()
-    found = inspect_mesh("crossing", vertices, faces).facts.crossings
-    assert found is not None
+    found = inspect_mesh("crossing", vertices, faces).crossings
     place = ", ".join(f"{x:.4g}" for x in found[0])
     scene = shipped("wok", 60)
     said = f"{len(found)} pairs of the part's faces cross, the first at ({place}) m"
@@ -65,7 +65,7 @@ def test_a_scene_says_where_faces_cross() -> None:
     assert not prepare(scene.with_object(block)).notes
 
 
-@pytest.mark.parametrize("name", SMALL)
+@pytest.mark.parametrize("name", [name for name in SMALL if name != "needles"])
 def test_what_is_repaired_can_be_used(name: str) -> None:
     """By trimesh: closed, oriented, with the volume of what it was made of."""
     vertices, faces = SMALL[name]()
@@ -77,8 +77,9 @@ def test_what_is_repaired_can_be_used(name: str) -> None:
     assert made.area_m2 == pytest.approx(mesh.area)
     if name in CLOSED_AREA:
         assert mesh.area == pytest.approx(CLOSED_AREA[name])
-    whole = made.area_before_m2 + sum(c.area_gained - c.area_lost for c in made.changes)
-    assert whole == pytest.approx(made.area_m2, rel=1e-6)
+    told = [re.search(r"\((\S+) m\^2\)", change) for change in made.changes]
+    whole = made.area_before_m2 + sum(float(found[1]) for found in told if found)
+    assert whole == pytest.approx(made.area_m2, rel=1e-3)
     if name == "holes":  # a ball with five of its vertices cut off
         assert 0.97 < mesh.volume / (4 / 3 * np.pi * 0.1**3) < 1
     if name in ("fin", "inverted", "components"):
@@ -92,9 +93,15 @@ def test_as_stl(tmp_path: Path) -> None:
     vertices, faces = DIRTY["needles"]()
     trimesh.Trimesh(vertices, faces, process=False).export(tmp_path / "needles.stl")
     rounded, corners = read_mesh(tmp_path / "needles.stl")
-    assert inspect_mesh("needles", rounded, corners).facts.flat_faces == 83
-    made = repair_mesh(rounded, corners)
-    assert made.holes == 0 and made.area_m2 == pytest.approx(0.076, rel=1e-5)
+    assert inspect_mesh("needles", rounded, corners).flat_faces == 83
+    for mesh in ((vertices, faces), (rounded, corners)):
+        with pytest.raises(InputError, match="T-vertex") as caught:
+            repair_mesh(*mesh)
+        assert str(caught.value.field).startswith("faces near (")
+    with pytest.raises(InputError, match="T-vertex") as caught:
+        load_mesh(tmp_path / "needles.stl", 1.0, mend=True)
+    assert caught.value.file == str(tmp_path / "needles.stl")
+    assert "\n" not in str(caught.value) and "faces near (" in str(caught.value)
 
 
 def test_a_moebius_strip_is_refused() -> None:
@@ -116,7 +123,7 @@ def test_a_moebius_strip_is_refused() -> None:
             c, d = d, c
         faces += [(a, b, c), (b, d, c)]
     mesh = np.concatenate([low, high]), np.array(faces)
-    assert inspect_mesh("strip", *mesh).facts.one_sided
+    assert inspect_mesh("strip", *mesh).one_sided
     with pytest.raises(InputError, match="one-sided component, like a Moebius strip") as caught:
         repair_mesh(*mesh)
     assert str(caught.value.field).startswith("faces near (")
@@ -152,7 +159,7 @@ def test_components_by_their_share() -> None:
 def test_a_million_triangles() -> None:
     vertices, faces = DIRTY["million"]()
     found = inspect_mesh("million", vertices, faces)
-    assert found.facts.triangles == 1_000_000 and found.facts.crossings is None
+    assert found.triangles == 1_000_000 and found.crossings == ()
     assert "501,501 vertices, at most 250,000 fit" in str(found.refusal)
     with pytest.raises(InputError, match=r"--edge-length 0\.0044? would give about 60,000"):
         repair_mesh(vertices, faces)

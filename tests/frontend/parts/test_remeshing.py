@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,9 +19,8 @@ from cellcolor.frontend import sizes
 from cellcolor.frontend.parts import remeshing
 from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.mesh_file import read_mesh
-from cellcolor.frontend.parts.repaired import repair_mesh
+from cellcolor.frontend.parts.repairing import repair_mesh
 from cellcolor.frontend.parts.shapes import grid_mesh
-from cellcolor.mesh.remesher import remesh
 
 pytestmark = pytest.mark.slow
 
@@ -57,7 +57,6 @@ def test_a_part_whose_sharp_edges_fold(length: float) -> None:
     new = trimesh.Trimesh(made.vertices, made.faces, process=False)
     assert new.is_watertight and new.is_winding_consistent
     assert np.degrees(new.face_adjacency_angles.max()) < 150
-    assert "folds mended: " in str(made)
     # What is said of the deviation is of the mesh that is handed out.
     assert made.deviation is not None
     _, distance, _ = trimesh.proximity.closest_point_naive(ring, made.vertices[::7])
@@ -69,13 +68,14 @@ def test_a_part_whose_sharp_edges_fold(length: float) -> None:
 def test_holes_torn_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """A remesher that loses a face; nothing is handed out with a hole that was not there."""
     ball = trimesh.creation.icosphere(2)
-    ask = remeshing._asked
+    ask = remeshing.run_alone
 
-    def losing(deadline: Deadline, function: Any, *arguments: Any) -> Any:
-        made = ask(deadline, function, *arguments)
-        return (made[0], made[1][1:]) if function is remesh else made
+    def losing(*asked: Any) -> Any:
+        ended = ask(*asked)
+        points, corners = ended.value
+        return replace(ended, value=(points, corners[1:]))
 
-    monkeypatch.setattr(remeshing, "_asked", losing)
+    monkeypatch.setattr(remeshing, "run_alone", losing)
     with pytest.raises(InputError, match="tore holes into the mesh; shorter edges") as caught:
         repair_mesh(np.array(ball.vertices), np.array(ball.faces), edge_length_m=0.4)
     assert caught.value.field == "edge_length_m"
@@ -114,7 +114,7 @@ def test_what_would_be_too_many_or_too_few(length: float, message: str) -> None:
 
 
 def test_the_deadline_ends_the_other_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Half a second after it was begun; it would take many."""
+    """A second after it was begun; it would take many."""
     grid, faces = grid_mesh(1.0, 1.0, 40_000, 0.0, 0)
     flat = np.column_stack([grid, 0.1 * np.sin(9 * grid[:, 0])])
     children = []
@@ -124,12 +124,10 @@ def test_the_deadline_ends_the_other_process(monkeypatch: pytest.MonkeyPatch) ->
         children.append(begin(*arguments, **options))
         return children[-1]
 
-    ask = remeshing._asked
     monkeypatch.setattr(subprocess, "Popen", noted)
-    monkeypatch.setattr(remeshing, "_asked", lambda _, *call: ask(Deadline.after(0.5), *call))
     said: list[str] = []
     with pytest.raises(OutOfTime):
-        repair_mesh(flat, faces, edge_length_m=0.003, tell=said.append)
+        remeshing.remeshed(flat, faces, 0.004, Deadline.after(1.5), said.append)
     assert said[-1].startswith("remeshing to about ")
     (child,) = children
     assert child.returncode is not None
