@@ -71,7 +71,7 @@ nitpick_ignore_regex = [
     # only type checkers import there.
     (
         r"py:class",
-        r"Path(Like)?(\[str\])?|NDArray|Array|Mask|Telling|Scene|BuildResult|SearchSpace|Count"
+        r"Path(Like)?(\[str\])?|NDArray|Array|Index|Mask|Telling|Scene|BuildResult|SearchSpace|Count"
         r"|cellcolor\.Drawing|cp_model\.\w+",
     ),
 ]

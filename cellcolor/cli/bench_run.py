@@ -26,7 +26,6 @@ from cellcolor.lab.runs.row import Row, by, disagreements
 from cellcolor.lab.runs.statistics import contestants_of, median_seconds
 from cellcolor.lab.runs.sweep import (
     Contestant,
-    Experiment,
     Specimen,
     Sweep,
     contestant,
@@ -55,13 +54,12 @@ def run_solvers(
     """Make the runs, keep each of them at once, and print what came of them.
 
     Args:
-        wanted: what else :class:`~cellcolor.lab.runs.sweep.Experiment` has of the options.
+        wanted: what else :class:`~cellcolor.lab.runs.sweep.Sweep` has of the options.
     """
     specimens = list(taking_turns([list(_subjects(text, seeds)) for text in subjects]))
     contestants = list(_contestants(solvers))
     if not contestants:
         return Exit.BAD_INPUT
-    plan = Experiment(subjects=specimens, contestants=contestants, command=command_line(), **wanted)
     table: AbstractContextManager[TableFile[Row] | None] = (
         nullcontext() if output is None else TableFile(output, Row)
     )
@@ -74,10 +72,17 @@ def run_solvers(
         bad.append(subject)
 
     with table as file:
-        sweep = Sweep(plan, {row.key for row in file.rows} if file else (), tell)
         before = list(file.rows) if file else []
+        sweep = Sweep(
+            specimens,
+            contestants,
+            command=shlex.join(["cellcolor", *sys.argv[1:]]),
+            done={row.key for row in before},
+            complain=tell,
+            **wanted,
+        )
         made: list[Row] = []
-        total = len(plan.subjects) * plan.runs_of_each
+        total = len(specimens) * sweep.runs_of_each
         try:
             with workers_for(jobs, cluster) as workers, progress_bar(total) as advance:
                 for row in sweep.run(workers):
@@ -95,11 +100,6 @@ def run_solvers(
     if wrong:
         return Exit.INVALID
     return Exit.STOPPED if interrupted else Exit.DONE
-
-
-def command_line() -> str:
-    """What was typed, for the record."""
-    return shlex.join(["cellcolor", *sys.argv[1:]])
 
 
 def _subjects(text: str, seeds: Sequence[int]) -> Iterator[Specimen]:

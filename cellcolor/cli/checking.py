@@ -26,7 +26,6 @@ from cellcolor.data.verdicts import (
     PlanImprovement,
     PlanVerdict,
     PlanViolation,
-    SegmentRange,
     SolutionVerdict,
 )
 from cellcolor.data.wording import count, lift_offs_of
@@ -215,7 +214,7 @@ def _check_plan(request: Request, subject: Subject, claim: Path) -> Exit:
 
 
 def _described(name: str, verdict: Verdict) -> PlanVerdict:
-    bounds, on_mesh, segments = verdict.bounds, verdict.on_mesh, verdict.segments
+    bounds, segments = verdict.bounds, verdict.segments
     return PlanVerdict(
         file=name,
         valid=verdict.valid,
@@ -233,7 +232,7 @@ def _described(name: str, verdict: Verdict) -> PlanVerdict:
         optimal=verdict.optimal,
         beatable_by=verdict.beatable_by,
         gap=None if bounds is None or segments is None else segments - bounds.lower,
-        on_mesh=None if on_mesh is None else SegmentRange(on_mesh.lower, on_mesh.upper),
+        on_mesh=verdict.on_mesh,
         improvement=_improved(verdict.improvement, segments),
         why=verdict.why,
         kept_lower_bound=verdict.kept_lower,

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from cellcolor.data.value import AboutAFile, Count, Value
+from cellcolor.data.wording import count
+from cellcolor.errors import InputError
+from cellcolor.files.validation import settle
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,16 +88,35 @@ class PlanViolation(Value):
 
 
 @dataclass(frozen=True, slots=True)
-class SegmentRange(Value):
-    """The range of a number of segments, both ends included.
+class ProvenRange(Value):
+    """The range that the fewest segments of a surface lie in, both ends included.
 
     Attributes:
         lower: there cannot be fewer.
         upper: this many are known to be enough.
+
+    Raises:
+        InputError: the two are no range of whole numbers from 0 on.
     """
 
     lower: Count
     upper: Count
+
+    def __post_init__(self) -> None:
+        settle(self)
+        if self.lower > self.upper:
+            message = f"must be 0 or more and at most upper, {self.upper}; is {self.lower}"
+            raise InputError(None, "lower", message)
+
+    @property
+    def exact(self) -> bool:
+        """The minimum is known."""
+        return self.lower == self.upper
+
+    def __str__(self) -> str:
+        if self.exact:
+            return f"exactly {count(self.lower, 'segment')}"
+        return f"between {self.lower} and {count(self.upper, 'segment')}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +184,7 @@ class PlanVerdict(AboutAFile):
     optimal: bool | None
     beatable_by: Count | None
     gap: Count | None
-    on_mesh: SegmentRange | None
+    on_mesh: ProvenRange | None
     improvement: PlanImprovement | None
     why: str | None
     kept_lower_bound: Count | None = None

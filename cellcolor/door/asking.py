@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
-from cellcolor.deadline import Deadline, TimeLimit
+from cellcolor.door.asked import Search, options_of
 from cellcolor.door.drawing import save_plot
 from cellcolor.door.extras import extras_for
 from cellcolor.door.leaving_out import front_on
@@ -17,7 +17,6 @@ from cellcolor.door.subject import Solvable, open_subject, scene_or_file
 from cellcolor.errors import InputError
 from cellcolor.questions.front import Front
 from cellcolor.questions.places import Place
-from cellcolor.solvers.interface import Options
 
 if TYPE_CHECKING:
     from cellcolor.arrays import Array
@@ -31,10 +30,8 @@ def tradeoff(
     weights: Sequence[float] | Array | None = None,
     required: Place | None = None,
     left_alone: Place | None = None,
-    time_limit: TimeLimit = None,
-    workers: int | None = None,
-    seed: int = 0,
     progress: Callable[[str], None] | None = None,
+    **search: Unpack[Search],
 ) -> Front:
     """Find the largest share of area that each number of lift-offs can cover, with proof.
 
@@ -44,10 +41,8 @@ def tradeoff(
         required: vertices that have to be covered: a mask (n,), a
             :class:`~cellcolor.questions.places.WorldBox`, or what a labelled surface gives up.
         left_alone: vertices that must not be covered, the same kinds; nothing is asked of them.
-        time_limit: seconds for all of it, None for as long as it takes.
-        workers: CP-SAT's search workers, None for its portfolio.
-        seed: for all random choices.
         progress: told what is being done.
+        **search: time limit, workers and seed (:class:`~cellcolor.door.asked.Search`).
 
     Returns:
         The front. Shares are of the area that can be covered and is not left alone.
@@ -57,9 +52,8 @@ def tradeoff(
             mask is of another mesh, or a weight is negative or no number.
         OutOfTime: the time limit came before any division was found.
     """
-    deadline = Deadline.of(time_limit)
-    subject = without_place(open_subject(source, deadline, progress), left_alone)
-    options = Options(deadline=deadline, workers=workers, seed=seed)
+    options = options_of(search)
+    subject = without_place(open_subject(source, options.deadline, progress), left_alone)
     return front_on(subject, weights, required, options, progress)
 
 
@@ -78,10 +72,8 @@ def explain(
     scene: str | PathLike[str] | Scene,
     *,
     at: Sequence[float] | None = None,
-    time_limit: TimeLimit = None,
-    workers: int | None = None,
-    seed: int = 0,
     progress: Callable[[str], None] | None = None,
+    **search: Unpack[Search],
 ) -> Explanation:
     """Find what costs a lift-off: the minimum with each limit, obstacle and test relaxed, proved.
 
@@ -91,10 +83,8 @@ def explain(
         scene: its file, its shipped name, or the value.
         at: (3,) a point in the world, m; the report also says what each branch does at the vertex
             nearest to it.
-        time_limit: seconds for all of it, None for no limit.
-        workers: CP-SAT's search workers, None for its portfolio.
-        seed: for all random choices.
         progress: told what is being tried.
+        **search: time limit, workers and seed (:class:`~cellcolor.door.asked.Search`).
 
     Returns:
         Rows, ranked.
@@ -103,7 +93,7 @@ def explain(
         InputError: the scene cannot be used, or the point is none or far from the part.
         OutOfTime: the time limit came before the scene itself was solved.
     """
-    deadline = Deadline.of(time_limit)
+    options = options_of(search)
     scene = scene_or_file(scene)
     point = None
     if at is not None:
@@ -114,5 +104,4 @@ def explain(
         from cellcolor.frontend.prepared import prepare
         from cellcolor.questions.explaining import explained
 
-    options = Options(deadline=deadline, workers=workers, seed=seed)
-    return explained(prepare(scene, deadline), options, point, progress)
+    return explained(prepare(scene, options.deadline), options, point, progress)

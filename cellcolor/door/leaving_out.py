@@ -28,12 +28,14 @@ class Wanted:
     """What has to be covered.
 
     Attributes:
-        cover: the share of the area that can be covered and is not left alone, 0 to 1; None for
-            all of it.
-        required: what has to be covered in any case.
-        left_alone: what must not be covered.
-        uncovered_price: without a share, what it costs in lift-offs to leave out all that can be
-            covered.
+        cover: the share of the area that can be covered and is not left alone which has to be, 0
+            to 1; None for all of it. What is best left out is settled first, as by ``tradeoff``.
+        required: with a share or a price, vertices that have to be covered whatever is left out: a
+            mask (n,), a :class:`~cellcolor.questions.places.WorldBox`, or what a labelled surface
+            gives up.
+        left_alone: vertices that must not be covered, the same kinds.
+        uncovered_price: instead of a share, what it costs in lift-offs to leave out all of that
+            area; a part of it costs that part. What is best left out has the least sum.
 
     Raises:
         InputError: the share is not from 0 to 1, the price is below 0, both are given, or something

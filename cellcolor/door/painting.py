@@ -34,7 +34,7 @@ def paint(
     tool_radius_m: float | None = None,
     time_limit: TimeLimit = None,
 ) -> Painted:
-    """Paint every vertex of a surface in the colors of a solution (docs/painting.md).
+    """Paint every vertex of a surface in the colors of a solution (docs/motion.md).
 
     Args:
         source: what was solved: a labelled surface, a scene, or an instance that names its
@@ -93,7 +93,7 @@ def cover(
     time_limit: TimeLimit = None,
     progress: Callable[[str], None] | None = None,
 ) -> Covered:
-    """Lay one continuous path on every segment of a painted surface (docs/tool-paths.md).
+    """Lay one continuous path on every segment of a painted surface (docs/motion.md).
 
     Args:
         surface: the painted surface, or its file; or what ``cellcolor.paint`` returns.

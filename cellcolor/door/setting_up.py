@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
 from cellcolor.data.prices import check_change_over
 from cellcolor.deadline import Deadline, TimeLimit
+from cellcolor.door.asked import Search, options_of
 from cellcolor.door.extras import extras_for
 from cellcolor.door.painting import paint
 from cellcolor.door.planned import PlannedScene
@@ -99,10 +100,8 @@ def setups(
     others: Sequence[str | PathLike[str] | Scene] = (),
     cover: float = 1.0,
     change_over: float | None = None,
-    time_limit: TimeLimit = None,
-    workers: int | None = None,
-    seed: int = 0,
     progress: Callable[[str], None] | None = None,
+    **search: Unpack[Search],
 ) -> ChosenSetUps:
     """Choose set-ups of a part that cover enough with the fewest lift-offs, with proof.
 
@@ -116,10 +115,8 @@ def setups(
         cover: the share that has to be covered of the area that any candidate reaches, 0 to 1.
         change_over: what a change from one set-up to the next costs, in lift-offs, 1 to 1,000,000
             with up to three decimals; None for the fewest set-ups first, then the fewest lift-offs.
-        time_limit: seconds for all of it, None for as long as it takes.
-        workers: CP-SAT's search workers, None for its portfolio.
-        seed: of everything random.
         progress: told what is being done.
+        **search: time limit, workers and seed (:class:`~cellcolor.door.asked.Search`).
 
     Raises:
         InputError: a scene cannot be used, a place or a share is none, another scene has another
@@ -132,18 +129,16 @@ def setups(
         raise InputError(None, "cover", f"must be from 0 to 1, is {cover:g}")
     if change_over is not None:
         check_change_over(change_over)
-    deadline = Deadline.of(time_limit)
+    options = options_of(search)
     poses = _poses(at)
     given = [scene_or_file(one) for one in (scene, *others)]
     with extras_for("the front end"):
         from cellcolor.frontend.scene import Scene as SceneValue
         from cellcolor.questions.setting_up import candidates_of, plan_of
-        from cellcolor.solvers.interface import Options
 
     scenes = [one if isinstance(one, SceneValue) else SceneValue.read(one) for one in given]
-    building, by_hand = deadline.share(_FOR_BUILDING), not isinstance(at, Placements)
+    building, by_hand = options.deadline.share(_FOR_BUILDING), not isinstance(at, Placements)
     found = candidates_of(scenes, poses, building, progress, by_hand=by_hand)
-    options = Options(deadline=deadline, workers=workers, seed=seed)
     answer = plan_of(found, cover, change_over, options, progress)
     return ChosenSetUps(answer, tuple(found.scenes[one.number - 1] for one in answer.set_ups))
 

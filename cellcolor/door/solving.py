@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import degrees
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Unpack
 
 from cellcolor.checker.division import check_solution
 from cellcolor.data.instance import Instance
@@ -15,7 +15,8 @@ from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.decomposition import decomposition_of
-from cellcolor.door.leaving_out import Wanted, rest_of
+from cellcolor.door.asked import SearchOfAPart, options_of, wanted_of
+from cellcolor.door.leaving_out import rest_of
 from cellcolor.door.result import GapStep, Result
 from cellcolor.door.subject import (
     Solvable,
@@ -25,9 +26,8 @@ from cellcolor.door.subject import (
     scene_or_file,
 )
 from cellcolor.errors import InputError
-from cellcolor.questions.places import Place
 from cellcolor.solvers import checked
-from cellcolor.solvers.interface import Options, Start
+from cellcolor.solvers.interface import STRANDS, Options, Start
 from cellcolor.solvers.registry import DEFAULT
 
 if TYPE_CHECKING:
@@ -83,15 +83,9 @@ def solve(
     solver: str = "cp-sat",
     search_space: SearchSpace = "paper",
     strands: int | None = None,
-    time_limit: TimeLimit = None,
-    workers: int | None = None,
-    seed: int = 0,
     start: Solution | Result | str | PathLike[str] | None = None,
-    cover: float | None = None,
-    uncovered_price: float | None = None,
-    required: Place | None = None,
-    left_alone: Place | None = None,
     progress: Callable[[int | None, int], None] | None = None,
+    **asked: Unpack[SearchOfAPart],
 ) -> Result:
     """Find the fewest segments of a scene, a labelled surface or an instance.
 
@@ -106,38 +100,25 @@ def solve(
         search_space: ``paper`` for no more than one corridor of a color across an edge, ``surface``
             for several.
         strands: how many, in the search space ``surface``; None for 2.
-        time_limit: seconds for all of it, None for no limit.
-        workers: CP-SAT's search workers, None for its portfolio.
-        seed: for all random choices.
         start: a solution to start from, or its file.
-        cover: the share of the area that can be covered and is not left alone which has to be, 0
-            to 1; None for all of it. What is best left out is settled first, as by ``tradeoff``.
-        uncovered_price: instead of a share, what it costs in lift-offs to leave out all of that
-            area; a part of it costs that part. What is best left out has the least sum.
-        required: with one of these, vertices that have to be covered whatever is left out: a mask
-            (n,), a :class:`~cellcolor.questions.places.WorldBox`, or what a labelled surface gives
-            up.
-        left_alone: vertices that must not be covered, the same kinds.
         progress: called with the segments of the best division so far, None before there is one,
             and the lower bound.
+        **asked: time limit, workers and seed (:class:`~cellcolor.door.asked.Search`); and what has
+            to be covered, which is everything if it is left out:
+            :class:`~cellcolor.door.leaving_out.Wanted`.
 
     Raises:
         InputError: what is to be solved, or an option, cannot be used.
         OutOfTime: the time limit came before any division was found.
     """
-    wanted = Wanted(cover, required, left_alone, uncovered_price)
-    deadline = Deadline.of(time_limit)
-    subject = open_subject(source, deadline)
-    choosing = Options(deadline=deadline, workers=workers, seed=seed)
-    subject, left_out, share = rest_of(subject, wanted, choosing)
-    instance = subject.graph(deadline)
-    given: dict[str, Any] = {} if strands is None else {"strands": strands}
-    options = Options(
-        search_space,
-        **given,
-        deadline=deadline,
-        workers=workers,
-        seed=seed,
+    wanted, options = wanted_of(asked), options_of(asked, SearchOfAPart)
+    subject = open_subject(source, options.deadline)
+    subject, left_out, share = rest_of(subject, wanted, options)
+    instance = subject.graph(options.deadline)
+    options = replace(
+        options,
+        search_space=search_space,
+        strands=STRANDS.get(search_space, 1) if strands is None else strands,
         start=None if start is None else start_from(start, instance, strands),
     )
     gap: list[GapStep] = []

@@ -132,7 +132,7 @@ class Task(Table):
     ``edge_radius_m``; without it that is ``contact_radius_m``, the tool's footprint.
 
     The tip link may stay off the surface by ``stand_off_m``, and the tool's axis off the normal by
-    ``tilt_rad`` and ``lead_rad`` (``docs/frontend/validity.md``, "Stand-off and tilt").
+    ``tilt_rad`` and ``lead_rad`` (``docs/frontend.md``, "Stand-off and tilt").
     """
 
     NEWER = ("edge_radius_m", "turn", "stand_off_m", "lead_rad", "tilt_rad")

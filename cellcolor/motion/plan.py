@@ -24,7 +24,7 @@ from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.transfers import Transfers
 from cellcolor.motion.ways import Transfer
 from cellcolor.painting.paint import Painted
-from cellcolor.tool_paths.cover import check_spacing
+from cellcolor.tool_paths.cover import Covered, check_spacing
 from cellcolor.tool_paths.measures import PathMeasures
 from cellcolor.tool_paths.region import Segments
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN
@@ -86,23 +86,16 @@ def plan_motion(
     planner = Transfers(prepared, motion, speeds.velocities, seed, deadline)
     clock = StageClock(deadline, progress)
     surface, segment_of = painted.surface, painted.segment_of
+    check_spacing(surface, segment_of, motion.spacing_m)
+    color_of = _colors(painted)
+    own_branch = np.array([built.color_branch[color] for color in color_of], dtype=np.int64)
     # Not of length 1: so their means are on the same way as those of the given surface.
     normals = painted.interpolated(built.stages.surface.normals)
-    color_of = _colors(painted)
-    check_spacing(surface, segment_of, motion.spacing_m)
-    branch_of = built.color_branch
+    segments = Segments(surface, segment_of, color_of, normals)
     with clock.timed("corners of small triangles"):
         small = SmallTriangles.of(surface.mesh, normals, segment_of)
-        own_branch = np.array([branch_of[color] for color in color_of], dtype=np.int64)
         states = corner_states(prepared, small, own_branch, deadline)
-    ground = Ground(
-        prepared,
-        Segments(surface, segment_of, color_of, normals),
-        states,
-        pattern,
-        motion,
-        deadline,
-    )
+    ground = Ground(prepared, segments, states, pattern, motion, deadline)
     with clock.timed("tool paths"):
         found = [
             strokes_of(ground, segment, int(own_branch[segment]))
@@ -121,12 +114,7 @@ def plan_motion(
     if on_paths is not None:
         on_paths(paths, tuple(measures))
     strokes = [stroke for _, own, _ in found for stroke in own]
-    left_out = tuple(
-        LeftOut(place.segment, place.area_m2, place.cause, place.place)
-        for laid in covered
-        for place in laid.uncovered
-    )
-    left_out = tuple(sorted(left_out, key=lambda part: (-part.area_m2, part.segment, part.place)))
+    left_out = _left_out(covered)
     if not strokes:
         raise InputError(None, None, _no_stroke(small, left_out, motion.spacing_m))
     with clock.timed("order of strokes"):
@@ -148,6 +136,16 @@ def plan_motion(
         tuple(edge for _, _, walls in found for edge in walls),
         _cut_off(strokes, transfers, color_of, planner.home is not None),
     )
+
+
+def _left_out(covered: Sequence[Covered]) -> tuple[LeftOut, ...]:
+    """What no path comes near to, the largest first."""
+    found = [
+        LeftOut(place.segment, place.area_m2, place.cause, place.place)
+        for laid in covered
+        for place in laid.uncovered
+    ]
+    return tuple(sorted(found, key=lambda part: (-part.area_m2, part.segment, part.place)))
 
 
 def _cut_off(

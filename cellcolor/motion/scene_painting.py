@@ -1,6 +1,6 @@
 """A solution painted with its scene: everything that is drawn is tested with the robot.
 
-A painting that had to be refined copies colors (docs/painting.md). Here the robot says what
+A painting that had to be refined copies colors (docs/motion.md). Here the robot says what
 reaches each new vertex, and whether a segment's color leads along each mesh edge inside it. If
 it rejects one of them, the refined surface gets its true colors, and is solved and painted
 again; the proof is then for that surface.

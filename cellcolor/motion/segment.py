@@ -72,47 +72,66 @@ def strokes_of(
     Raises:
         OutOfTime: the deadline came first.
     """
-    prepared, surface, motion = ground.prepared, ground.segments.surface, ground.motion
-    small, space = ground.states.small, joint_space(prepared)
-    own = ground.segments.segment_of == segment
-    alone = ground.segments._replace(segment_of=np.where(own, segment, -1))
+    segments, motion, space = ground.segments, ground.motion, joint_space(ground.prepared)
+    own = segments.segment_of == segment
 
     def refused_near(touched: Mask) -> ArmRefusals:
         around = _AROUND * motion.spacing_m
         return ArmRefusals(
-            prepared, branch, ground.states, segment, touched, around, ground.deadline
+            ground.prepared, branch, ground.states, segment, touched, around, ground.deadline
         )
 
-    def courses_with(
-        refusals: ArmRefusals,
-        walls: Collection[tuple[int, int]] = (),
-        overlap: Overlap | None = None,
-    ) -> tuple[Covered, list[Course]]:
-        def lay() -> Covered:
-            return cover(
-                alone,
-                pattern=ground.pattern,
-                spacing_m=motion.spacing_m,
-                tool_radius_m=motion.tool_radius_m,
-                bounds=Bounds(walls, refusals, overlap),
-                deadline=ground.deadline,
-            )
-
-        normals = ground.segments.normals
-        return laid_out(prepared, surface, normals, branch, lay, refusals, ground.deadline)
-
     if motion.overlap_m:
-        overlap = Overlap.of(ground.segments, segment, motion.overlap_m)
-        refusals = refused_near(overlap.widened(surface, own))
-        covered, courses = courses_with(refusals, overlap=overlap)
+        overlap = Overlap.of(segments, segment, motion.overlap_m)
+        refusals = refused_near(overlap.widened(segments.surface, own))
+        covered, courses = _courses(ground, segment, branch, refusals, overlap=overlap)
         strokes = _on(ground, courses, branch)
         if len(strokes) == 1 and space.fits(strokes[0].joints):
             return covered, strokes, ()
     refusals = refused_near(own)
-    covered, courses = courses_with(refusals)
+    covered, courses = _courses(ground, segment, branch, refusals)
     strokes = _on(ground, courses, branch)
     if all(space.fits(stroke.joints) for stroke in strokes):
         return covered, strokes, ()
+    return _between_walls(ground, segment, branch, refusals, len(strokes))
+
+
+def _courses(
+    ground: Ground,
+    segment: int,
+    branch: int,
+    refusals: ArmRefusals,
+    walls: Collection[tuple[int, int]] = (),
+    overlap: Overlap | None = None,
+) -> tuple[Covered, list[Course]]:
+    """Paths on a segment, and the arm on them."""
+    segments, motion = ground.segments, ground.motion
+    alone = np.where(segments.segment_of == segment, segment, -1)
+
+    def lay() -> Covered:
+        return cover(
+            segments._replace(segment_of=alone),
+            pattern=ground.pattern,
+            spacing_m=motion.spacing_m,
+            tool_radius_m=motion.tool_radius_m,
+            bounds=Bounds(walls, refusals, overlap),
+            deadline=ground.deadline,
+        )
+
+    surface, normals = segments.surface, segments.normals
+    return laid_out(ground.prepared, surface, normals, branch, lay, refusals, ground.deadline)
+
+
+def _between_walls(
+    ground: Ground, segment: int, branch: int, refusals: ArmRefusals, parted: int
+) -> tuple[Covered, list[Stroke], Collection[tuple[int, int]]]:
+    """As :func:`strokes_of`, with walls between which the joints stay in their limits.
+
+    Args:
+        parted: how many strokes there are without walls.
+    """
+    prepared, surface, small = ground.prepared, ground.segments.surface, ground.states.small
+    space = joint_space(prepared)
     color = ground.segments.colors[segment]
     cracks = [crack for crack in surface.cracks if color in crack.colors]
     closed = small.whole.marked([(crack.i, crack.j) for crack in cracks])
@@ -123,9 +142,8 @@ def strokes_of(
         parts = parts.at_vertices(small.whole, closed, space)
         walls = walls_of(parts, small.whole, space, ground.deadline)
         refusals.keep_inside(parts.part_of, walls.turns)
-    parted = len(strokes)
     for _ in range(_ROUNDS):
-        covered, courses = courses_with(refusals, walls.edges)
+        covered, courses = _courses(ground, segment, branch, refusals, walls.edges)
         strokes = _on(ground, courses, branch)
         if not _refuse_what_is_beyond(courses, strokes, space, refusals):
             break
@@ -139,7 +157,7 @@ def strokes_of(
         for stroke in strokes
         for part in cut_where_full(stroke, space, prepared.robot.joint_names)
     ]
-    return covered, _worth_a_lift_off(cut, motion.spacing_m), walls.edges
+    return covered, _worth_a_lift_off(cut, ground.motion.spacing_m), walls.edges
 
 
 def _refuse_what_is_beyond(

@@ -16,8 +16,9 @@ Where a test cannot wait for a proof, ``assert not verdict.beatable_by`` is enou
 that are proved to have too many; it passes as well if nothing is known.
 """
 
+from cellcolor.data.verdicts import ProvenRange
 from cellcolor.oracle.improvement import BetterPainting, Improvement
-from cellcolor.oracle.ranges import Proof, ProvenRange, prove
+from cellcolor.oracle.ranges import Proof, prove
 from cellcolor.oracle.verdict import JointViolation, PathVerdict, Verdict
 
 __all__ = [

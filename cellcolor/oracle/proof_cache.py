@@ -16,11 +16,12 @@ from cellcolor.checker.division import check_solution
 from cellcolor.data.bounds import greatest
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.verdicts import ProvenRange
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_document, sha256_of
-from cellcolor.oracle.ranges import Proof, ProvenRange
+from cellcolor.oracle.ranges import Proof
 from cellcolor.solvers.interface import STRANDS
 
 

@@ -11,45 +11,11 @@ from dataclasses import dataclass
 
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.data.wording import count
+from cellcolor.data.verdicts import ProvenRange
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import Decomposition, decomposition_of
-from cellcolor.errors import InputError
-from cellcolor.files.validation import settle
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import STRANDS, Options
-
-
-@dataclass(frozen=True, slots=True)
-class ProvenRange:
-    """The range that the fewest segments of a surface lie in, both ends included.
-
-    Attributes:
-        lower: no division of the surface has fewer segments.
-        upper: a division with that many segments exists, and the checker has passed it.
-
-    Raises:
-        InputError: the two are no range of whole numbers from 0 on.
-    """
-
-    lower: int
-    upper: int
-
-    def __post_init__(self) -> None:
-        settle(self)
-        if not 0 <= self.lower <= self.upper:
-            message = f"must be 0 or more and at most upper, {self.upper}; is {self.lower}"
-            raise InputError(None, "lower", message)
-
-    @property
-    def exact(self) -> bool:
-        """The minimum is known."""
-        return self.lower == self.upper
-
-    def __str__(self) -> str:
-        if self.exact:
-            return f"exactly {count(self.lower, 'segment')}"
-        return f"between {self.lower} and {count(self.upper, 'segment')}"
 
 
 @dataclass(frozen=True)

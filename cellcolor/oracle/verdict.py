@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.data.verdicts import PlanViolation
+from cellcolor.data.verdicts import PlanViolation, ProvenRange
 from cellcolor.data.wording import count, lift_offs_of, segments_and_lift_offs
 from cellcolor.errors import InputError
 from cellcolor.oracle.improvement import Improvement
-from cellcolor.oracle.ranges import ProvenRange
 
 if TYPE_CHECKING:
     import cellcolor

@@ -1,4 +1,4 @@
-"""Moves the borders between segments of a painting (docs/painting.md, "Moving the borders").
+"""Moves the borders between segments of a painting (docs/motion.md, "Moving the borders").
 
 The aims, most important first:
 

@@ -98,7 +98,7 @@ def paint(
     solution: Solution,
     deadline: Deadline = NEVER,
 ) -> Painted:
-    """Paint every vertex of a surface in the colors of a solution (docs/painting.md).
+    """Paint every vertex of a surface in the colors of a solution (docs/motion.md).
 
     A cell that is not divided is painted as a whole. In a divided one a tree for each sub-cell
     connects the places where it crosses the cell's border, and every other vertex goes with the

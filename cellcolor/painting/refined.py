@@ -4,7 +4,7 @@ A new vertex lies in the middle of a mesh edge and copies one end of it: it has 
 and stands for that end in all that follows. A mesh edge between vertices that stand for the same
 old vertex has no crack; any other has the crack of the old mesh edge that it stands for.
 Contracting every group of vertices that stand for one old vertex gives the old mesh again, so the
-topological graph of the refined surface is that of the old one (docs/painting.md).
+topological graph of the refined surface is that of the old one (docs/motion.md).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 MOST_VERTICES = 250_000
 """No surface is refined beyond that, so that painting it stays within the memory that is promised
-(docs/painting.md has what was measured)."""
+(docs/motion.md has what was measured)."""
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ form a **piece**; a sub-cell is unfinished while it has several pieces. Vertices
 **walk** goes round a connected part of the wall once, with the free vertices on its left.
 
 Each step connects two pieces of one sub-cell in one of two ways. After either, the rest of the
-division can still be drawn (docs/painting.md has the proof):
+division can still be drawn (docs/motion.md has the proof):
 
 - along the wall, if the two pieces are on one walk and no unfinished sub-cell is met between them;
 - across, by a shortest way, if they are on different walks.

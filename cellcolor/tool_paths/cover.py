@@ -87,7 +87,7 @@ def cover(
     deadline: Deadline = NEVER,
     progress: Callable[[str], None] | None = None,
 ) -> Covered:
-    """Lay a path on every connected part of every segment (docs/tool-paths.md).
+    """Lay a path on every connected part of every segment (docs/motion.md).
 
     Args:
         segments: of the painted surface.

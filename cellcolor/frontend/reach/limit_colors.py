@@ -1,4 +1,4 @@
-"""Colors that keep the joint limits by themselves (``docs/frontend/continuity.md``, "Turns").
+"""Colors that keep the joint limits by themselves (``docs/frontend.md``, "Turns").
 
 Nodes are vertices with a position of each joint inside its limits, and the components of linked
 nodes are the colors. Of a component that comes back to a vertex turned by a full circle, a window

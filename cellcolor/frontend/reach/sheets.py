@@ -1,6 +1,6 @@
 """Solutions without names, put into sheets, which then are the branches of the arm.
 
-What a sheet means at vertices, between and off them: ``docs/frontend/continuity.md``, "Continuity
+What a sheet means at vertices, between and off them: ``docs/frontend.md``, "Continuity
 without names". In standard terms, solutions are the points of a covering of the part, links are
 lifts of mesh edges by continuation (path tracking), and a sheet is a sheet of the covering, or
 several pieces of one.

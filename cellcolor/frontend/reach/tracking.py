@@ -1,5 +1,5 @@
 """Solutions followed along mesh edges by Newton's method, with steps whose length adapts (numerical
-continuation, ``docs/frontend/continuity.md``).
+continuation, ``docs/frontend.md``).
 
 This finds out which solution at another pose is meant. Whether a motion there is continuous is
 tested as of named branches (:mod:`cellcolor.frontend.reach.smooth`), in much shorter steps.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from fnmatch import fnmatchcase
@@ -153,15 +153,18 @@ _STATUS: dict[str, Status] = {"timeout": "timeout", "memory": "memory"}
 """Ends of runs that did not come back; all others have crashed."""
 
 
-@dataclass(frozen=True, slots=True)
-class Experiment:
-    """Which runs to make.
+@dataclass
+class Sweep:
+    """Which runs to make, and making them.
 
     Attributes:
         limits: seconds for each solve, one limit or several.
         repetitions: of each run, with other random numbers in the solver.
         megabytes: of memory for each run.
         command: that asked for them, for the record.
+        done: keys of runs that are not to be made again.
+        complain: told of instances that cannot be made.
+        skipped: runs that were there already, or whose instance could not be made.
     """
 
     subjects: Sequence[Specimen]
@@ -171,34 +174,14 @@ class Experiment:
     search_space: SearchSpace
     megabytes: float
     command: str
+    done: set[Key]
+    complain: Callable[[Specimen, CellcolorError], None]
+    skipped: int = 0
 
     @property
     def runs_of_each(self) -> int:
         """Runs on one instance."""
         return len(self.limits) * self.repetitions * len(self.contestants)
-
-
-class Sweep:
-    """The runs of a plan.
-
-    Args:
-        done: keys of runs that are not to be made again.
-        complain: told of instances that cannot be made.
-
-    Attributes:
-        skipped: runs that were there already, or whose instance could not be made.
-    """
-
-    def __init__(
-        self,
-        plan: Experiment,
-        done: Collection[Key],
-        complain: Callable[[Specimen, CellcolorError], None],
-    ) -> None:
-        self.skipped = 0
-        self._plan = plan
-        self._done = set(done)
-        self._complain = complain
 
     def run(self, workers: Workers) -> Iterator[Row]:
         """A row for each run, as they end."""
@@ -207,13 +190,12 @@ class Sweep:
 
     def _tasks(self) -> Iterator[tuple[dict[str, Any], Task]]:
         """What each run's row says before it is made, and what makes it."""
-        plan = self._plan
-        for subject in plan.subjects:
+        for subject in self.subjects:
             try:
                 instance = subject.make()
             except CellcolorError as error:
-                self._complain(subject, error)
-                self.skipped += plan.runs_of_each
+                self.complain(subject, error)
+                self.skipped += self.runs_of_each
                 continue
             of_instance = {
                 "family": subject.family,
@@ -225,11 +207,11 @@ class Sweep:
                 "colors": len(instance.colors),
                 "live_darts": instance.most_live_darts,
                 "live_loops": instance.most_live_loops,
-                "search_space": plan.search_space,
-                "command": plan.command,
+                "search_space": self.search_space,
+                "command": self.command,
             }
             for limit, repetition, contestant in product(
-                plan.limits, range(plan.repetitions), plan.contestants
+                self.limits, range(self.repetitions), self.contestants
             ):
                 solver, workers = contestant.solver, contestant.workers
                 known = of_instance | {
@@ -240,14 +222,14 @@ class Sweep:
                     "repetition": repetition,
                 }
                 key = _row(known, Ended("stopped")).key
-                if key in self._done:
+                if key in self.done:
                     self.skipped += 1
                     continue
-                self._done.add(key)
-                options = Options(plan.search_space, workers=workers, seed=repetition)
+                self.done.add(key)
+                options = Options(self.search_space, workers=workers, seed=repetition)
                 # The process's own limits are met only by what does not keep its own.
                 seconds = _START_UP + limit + LATE + _CHECKING
-                limits = Limits(seconds, plan.megabytes)
+                limits = Limits(seconds, self.megabytes)
                 yield known, Task(answer, (instance, solver, options, limit), limits)
 
 
