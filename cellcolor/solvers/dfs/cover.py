@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline
 from cellcolor.solvers.dfs.graph import Graph, GraphCell
-from cellcolor.solvers.dfs.search import Painting, DepthFirstSearch
+from cellcolor.solvers.dfs.search import DepthFirstSearch, Painting
 
 
 class CoverSearch(DepthFirstSearch):

@@ -12,7 +12,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.dfs.cover import CoverSearch
 from cellcolor.solvers.dfs.graph import Graph
-from cellcolor.solvers.dfs.search import Painting, DepthFirstSearch
+from cellcolor.solvers.dfs.search import DepthFirstSearch, Painting
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 
 _Blocks = dict[int, list[tuple[int, list[DartName]]]]
@@ -154,7 +154,7 @@ class _Part:
             return 1
 
     def improve(self) -> Iterator[None]:
-        """DepthFirstSearch until the minimum is found; yields whenever there is a better division.
+        """Search until the minimum is found; yields whenever there is a better division.
 
         Seams get one strand more each time until they have enough of them or the bound is met.
 

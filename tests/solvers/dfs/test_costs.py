@@ -22,7 +22,7 @@ from cellcolor.decomposition import decompose
 from cellcolor.lab.families import planar_graph
 from cellcolor.solvers.dfs import literal_cost
 from cellcolor.solvers.dfs.graph import Graph
-from cellcolor.solvers.dfs.search import Painting, DepthFirstSearch
+from cellcolor.solvers.dfs.search import DepthFirstSearch, Painting
 from cellcolor.solvers.interface import Options
 
 
