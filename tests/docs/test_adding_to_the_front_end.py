@@ -22,7 +22,7 @@ pytestmark = pytest.mark.second
 
 
 def test_a_torus(tmp_path: Path) -> None:
-    with followed("add-a-part", tmp_path) as names:
+    with followed("add-a-part", "", tmp_path) as names:
         result, scene = names["result"], names["scene"]
         vertices = result.surface.vertices - scene.placement.position_m
         from_ring = np.hypot(np.hypot(vertices[:, 0], vertices[:, 1]) - 0.12, vertices[:, 2])
@@ -38,7 +38,7 @@ def test_a_torus(tmp_path: Path) -> None:
 
 
 def test_a_pyramid(tmp_path: Path) -> None:
-    with followed("add-an-obstacle", tmp_path) as names:
+    with followed("add-an-obstacle", "", tmp_path) as names:
         result, free = names["result"], names["free"]
         assert (result.reasons != free.reasons).any()
         lost = (free.reasons == VALID) & (result.reasons != VALID)
@@ -53,7 +53,7 @@ def test_a_pyramid(tmp_path: Path) -> None:
 
 
 def test_a_keep_out_zone(tmp_path: Path) -> None:
-    with followed("add-a-validity-test", tmp_path) as names:
+    with followed("add-a-validity-test", "", tmp_path) as names:
         result, free, scene = names["result"], names["free"], names["scene"]
         code = result.reason_names.index("keep-out zone")
         assert code == len(result.reason_names) - 1 == len(STANDARD_TESTS) + 2
@@ -81,7 +81,7 @@ def test_a_keep_out_zone(tmp_path: Path) -> None:
 
 
 def test_an_arm_with_four_joints(tmp_path: Path) -> None:
-    with followed("add-a-family-of-arms", tmp_path) as names:
+    with followed("add-a-family-of-arms", "", tmp_path) as names:
         result, scene = names["result"], names["scene"]
         assert result.branches == ("elbow-up", "elbow-down")
         assert result.configurations.shape == (len(result.surface.vertices), 2, 4)
@@ -99,7 +99,7 @@ def test_an_arm_with_four_joints(tmp_path: Path) -> None:
 
 
 def test_an_own_arm_whose_solutions_have_no_names(tmp_path: Path) -> None:
-    with followed("add-a-family-of-arms", tmp_path) as names:
+    with followed("add-a-family-of-arms", "", tmp_path) as names:
         named, scene = names["result"], names["scene"]
         sys.modules["pitch_arm"].PitchArm.branches = ()
         result = build_surface(scene)
@@ -110,7 +110,7 @@ def test_an_own_arm_whose_solutions_have_no_names(tmp_path: Path) -> None:
 
 
 def test_what_is_not_named_is_not_imported(tmp_path: Path) -> None:
-    with followed("add-a-part", tmp_path, run=False):
+    with followed("add-a-part", "", tmp_path, run=False):
         build_surface(shipped("wok", 50))
         assert "torus_part" not in sys.modules
         Scene.read("torus.toml")
@@ -128,7 +128,7 @@ def test_what_is_not_named_is_not_imported(tmp_path: Path) -> None:
     ],
 )
 def test_faulty_registrations(tmp_path: Path, change: tuple[str, str], message: str) -> None:
-    with followed("add-a-part", tmp_path, run=False):
+    with followed("add-a-part", "", tmp_path, run=False):
         points = tmp_path / "toy-1.0.dist-info" / "entry_points.txt"
         points.write_text(points.read_text().replace(*change))
         with pytest.raises(InputError, match=message) as caught:
@@ -137,7 +137,7 @@ def test_faulty_registrations(tmp_path: Path, change: tuple[str, str], message: 
 
 
 def test_no_reason_has_two_meanings(tmp_path: Path) -> None:
-    with followed("add-a-validity-test", tmp_path) as names:
+    with followed("add-a-validity-test", "", tmp_path) as names:
         zone = names["scene"].validity_test[0]
         type(zone).name = "torque"
         with pytest.raises(InputError, match="a reason 'torque' already") as caught:
