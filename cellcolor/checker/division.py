@@ -152,7 +152,10 @@ def _legal(division: Division, stuck: Strand | None, not_canonical: Sequence[str
     """
     problems, segments = _segments(division)
     if stuck is not None:
-        text = f"edge {_edge(stuck)}: shows one joinable color on both sides in state 0"
+        text = (
+            f"edge {_edge(stuck)}: shows one joinable color on both sides in state 0; join it "
+            "(cellcolor.solvers.joining.joined does)"
+        )
         problems.insert(0, text)
     return Report(tuple(problems), tuple(not_canonical), segments)
 

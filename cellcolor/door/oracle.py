@@ -227,6 +227,8 @@ class Oracle:
         bounds = proof.bounds
         if segments < bounds.lower:
             raise BeatenBound(self.surface.name, segments, bounds.lower)
+        # The plan shows that as many are enough, however little was proved in time.
+        bounds = ProvenRange(bounds.lower, min(bounds.upper, segments))
         if segments == bounds.lower:
             return Verdict((), segments, bounds, why=self._why, **about)
         improvement, best = None, None if given is None else self._best(deadline)

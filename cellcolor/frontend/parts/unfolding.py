@@ -42,12 +42,17 @@ def folds(vertices: Array, faces: Faces, angle: float) -> list[Index]:
     Args:
         angle: between the normals of two neighbors, rad; above it they are folded.
     """
+    flat, pairs = _faults(vertices, faces, angle)
+    together = [np.unique(both) for both in faces[pairs]]
+    return [*faces[flat], *(corners for corners in together if len(corners) < _APART)]
+
+
+def _faults(vertices: Array, faces: Faces, angle: float) -> tuple[Index, Index]:
+    """The flat faces (k,), and the pairs (p, 2) of faces that are folded or cross anywhere."""
     mesh, flat = TriangleMesh(vertices, faces), flat_faces(vertices, faces)
     sides = mesh.pairs[1][np.isin(mesh.pairs[0], mesh.sharp_edges(angle))] // 3
     turned = sides[~flat[sides].any(axis=1)]
-    pairs = np.concatenate([turned, crossing_pairs(vertices, faces)])
-    together = [np.unique(both) for both in faces[pairs]]
-    return [*faces[flat], *(corners for corners in together if len(corners) < _APART)]
+    return np.flatnonzero(flat), np.concatenate([turned, crossing_pairs(vertices, faces)])
 
 
 def unfolded(
@@ -90,7 +95,7 @@ def _drawn_in(
     ring = _ring(faces, vertex)
     near = np.asarray(np.isin(faces, [*ring, vertex]).any(axis=1))
     here = faces[near]
-    cost = len(folds(vertices, here, angle))
+    cost = sum(map(len, _faults(vertices, here, angle)))
     for other in ring.tolist():
         if len(np.intersect1d(ring, _ring(faces, other))) != 2:
             continue
@@ -98,7 +103,9 @@ def _drawn_in(
         kept = ~repeated_corners(drawn)
         moved = drawn[kept & (here == vertex).any(axis=1)]
         drawn = drawn[kept]
-        if repeated_faces(drawn).any() or len(folds(vertices, drawn, angle)) >= cost:
+        if repeated_faces(drawn).any():
+            continue
+        if sum(map(len, _faults(vertices, drawn, angle))) >= cost:
             continue
         squared = igl.point_mesh_squared_distance(vertices[[vertex]], vertices, moved)[0]
         if np.sqrt(squared.max()) < best:
