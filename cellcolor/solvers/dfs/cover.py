@@ -13,10 +13,10 @@ from collections.abc import Iterator, Sequence
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline
 from cellcolor.solvers.dfs.graph import Graph, GraphCell
-from cellcolor.solvers.dfs.search import Painting, Search
+from cellcolor.solvers.dfs.search import Painting, DepthFirstSearch
 
 
-class CoverSearch(Search):
+class CoverSearch(DepthFirstSearch):
     """The depth-first search in which a branch ends where a cover says so."""
 
     def __init__(self, graph: Graph, cells: Sequence[GraphCell], deadline: Deadline) -> None:

@@ -40,7 +40,7 @@ class Painting:
     growing: dict[DartName, Segment] = field(default_factory=dict)
 
 
-class Search:
+class DepthFirstSearch:
     """The depth-first search of one connected part of the graph.
 
     Args:

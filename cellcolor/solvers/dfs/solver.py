@@ -12,7 +12,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.dfs.cover import CoverSearch
 from cellcolor.solvers.dfs.graph import Graph
-from cellcolor.solvers.dfs.search import Painting, Search
+from cellcolor.solvers.dfs.search import Painting, DepthFirstSearch
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 
 _Blocks = dict[int, list[tuple[int, list[DartName]]]]
@@ -30,7 +30,7 @@ class ReferenceSolver:
         several_loops=True,
         optimal_schemes=True,
     )
-    search: type[Search] = Search
+    search: type[DepthFirstSearch] = DepthFirstSearch
     bound_before: str | None = None
     """The kind of the bound that is known before the search and holds for any division."""
 
@@ -136,7 +136,7 @@ class _Part:
     """
 
     def __init__(
-        self, search: type[Search], graph: Graph, cells: Sequence[int], deadline: Deadline
+        self, search: type[DepthFirstSearch], graph: Graph, cells: Sequence[int], deadline: Deadline
     ) -> None:
         self._kind, self._graph, self._cells, self._deadline = search, graph, cells, deadline
         self.cost: int | None = None
@@ -154,7 +154,7 @@ class _Part:
             return 1
 
     def improve(self) -> Iterator[None]:
-        """Search until the minimum is found; yields whenever there is a better division.
+        """DepthFirstSearch until the minimum is found; yields whenever there is a better division.
 
         Seams get one strand more each time until they have enough of them or the bound is met.
 
@@ -181,14 +181,14 @@ class _Part:
         for painting in search.paintings():
             yield blocks | _named(search, painting)
 
-    def _search(self, seam_strands: int) -> tuple[Search, list[Seam]]:
+    def _search(self, seam_strands: int) -> tuple[DepthFirstSearch, list[Seam]]:
         built = [self._graph.cell(cell, seam_strands) for cell in self._cells]
         cells = [cell for cell, _ in built]
         search = self._kind(self._graph, cells, self._deadline)
         return search, [seam for _, seams in built for seam in seams]
 
 
-def _named(search: Search, painting: Painting) -> _Blocks:
+def _named(search: DepthFirstSearch, painting: Painting) -> _Blocks:
     return {
         cell.id: [(color, [cell.darts[i] for i in darts]) for color, darts in scheme.subcells]
         for cell, scheme in zip(search.cells, painting.schemes, strict=True)

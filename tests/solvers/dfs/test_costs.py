@@ -22,7 +22,7 @@ from cellcolor.decomposition import decompose
 from cellcolor.lab.families import planar_graph
 from cellcolor.solvers.dfs import literal_cost
 from cellcolor.solvers.dfs.graph import Graph
-from cellcolor.solvers.dfs.search import Painting, Search
+from cellcolor.solvers.dfs.search import Painting, DepthFirstSearch
 from cellcolor.solvers.interface import Options
 
 
@@ -56,7 +56,7 @@ def test_literal_cost_prefers_a_circle_to_a_division_with_fewer_segments() -> No
     graph = Graph(instance, 1)
     (part,) = graph.parts()
     cells = [graph.cell(cell, 0)[0] for cell in part]
-    everything = Search(graph, cells, NEVER).paintings()
+    everything = DepthFirstSearch(graph, cells, NEVER).paintings()
     costs = []
     for painting in everything:
         blocks = {
@@ -84,7 +84,7 @@ def test_the_cost_carried_along_is_the_number_of_segments(
 ) -> None:
     """Of each part of the graph that is solved so far, counted again by a search for components."""
     graph = Graph(planar_graph(seed, 6, 10, 2, self_edges=self_edges), 1)
-    search = Search(graph, [graph.cell(c, 0)[0] for c in graph.parts()[0]], NEVER)
+    search = DepthFirstSearch(graph, [graph.cell(c, 0)[0] for c in graph.parts()[0]], NEVER)
     painting = Painting()
     while len(painting.schemes) < len(search.cells):
         branches = list(islice(search.branches(painting), 50))
