@@ -1,4 +1,4 @@
-"""Every picture by name; ``cellcolor show --view NAME`` draws it (docs/how-to/add-a-picture.md).
+"""Every picture by name; ``cellcolor show --view NAME`` draws it (docs/how-to/extend.md).
 
 A picture is a function. The names of its parameters say what it is drawn of:
 

@@ -20,9 +20,11 @@ from cellcolor.frontend.reach.validity_tests import STANDARD_TESTS
 
 pytestmark = pytest.mark.second
 
+PARTS_AND_TESTS = "Parts, obstacles and validity tests"
+
 
 def test_a_torus(tmp_path: Path) -> None:
-    with followed("add-a-part", tmp_path) as names:
+    with followed("extend", PARTS_AND_TESTS, tmp_path) as names:
         result, scene = names["result"], names["scene"]
         vertices = result.surface.vertices - scene.placement.position_m
         from_ring = np.hypot(np.hypot(vertices[:, 0], vertices[:, 1]) - 0.12, vertices[:, 2])
@@ -38,23 +40,23 @@ def test_a_torus(tmp_path: Path) -> None:
 
 
 def test_a_pyramid(tmp_path: Path) -> None:
-    with followed("add-an-obstacle", tmp_path) as names:
-        result, free = names["result"], names["free"]
+    with followed("extend", PARTS_AND_TESTS, tmp_path) as names:
+        result, free = names["result"], names["without_pyramid"]
         assert (result.reasons != free.reasons).any()
         lost = (free.reasons == VALID) & (result.reasons != VALID)
         reasons = {result.reason_names[code] for code in result.reasons[lost]}
         assert reasons == {"tip blocked", "obstacle collision"}
         # Inside of the pyramid no tip can be; in a section |x| + |y| is half its diagonal.
-        across = np.abs(result.surface.vertices[:, :2] - [0.5, 0.1]).sum(axis=1)
-        inside = across < 0.06 * (0.25 - 0.1) / 0.25
+        x, y, z = result.surface.vertices.T
+        inside = np.abs(x - 0.33) + np.abs(y - 0.1) < 0.06 * (0.4 - z) / 0.4
         assert inside.any() and not any(
             result.surface.vertex_colors[vertex] for vertex in np.flatnonzero(inside)
         )
 
 
 def test_a_keep_out_zone(tmp_path: Path) -> None:
-    with followed("add-a-validity-test", tmp_path) as names:
-        result, free, scene = names["result"], names["free"], names["scene"]
+    with followed("extend", PARTS_AND_TESTS, tmp_path) as names:
+        result, free, scene = names["result"], names["without_zone"], names["scene"]
         code = result.reason_names.index("keep-out zone")
         assert code == len(result.reason_names) - 1 == len(STANDARD_TESTS) + 2
         found = result.reasons == code
@@ -71,7 +73,7 @@ def test_a_keep_out_zone(tmp_path: Path) -> None:
                     for end in (body.start, body.end)
                 ]
             )
-            inside = (np.abs(ends - [0.725, 0.0, 1.0]) <= [0.275, 1.0, 1.0]).all(axis=2)
+            inside = (np.abs(ends - [0.735, 0.0, 1.0]) <= [0.265, 1.0, 1.0]).all(axis=2)
             assert len(poses.tip) > 20 and (inside.any(axis=0) == expected).all()
         # The side file knows the new reason by its name.
         (tmp_path / "zone.npz").write_bytes(result.candidates.to_bytes())
@@ -81,7 +83,7 @@ def test_a_keep_out_zone(tmp_path: Path) -> None:
 
 
 def test_an_arm_with_four_joints(tmp_path: Path) -> None:
-    with followed("add-a-family-of-arms", tmp_path) as names:
+    with followed("extend", "A family of arms", tmp_path) as names:
         result, scene = names["result"], names["scene"]
         assert result.branches == ("elbow-up", "elbow-down")
         assert result.configurations.shape == (len(result.surface.vertices), 2, 4)
@@ -99,7 +101,7 @@ def test_an_arm_with_four_joints(tmp_path: Path) -> None:
 
 
 def test_an_own_arm_whose_solutions_have_no_names(tmp_path: Path) -> None:
-    with followed("add-a-family-of-arms", tmp_path) as names:
+    with followed("extend", "A family of arms", tmp_path) as names:
         named, scene = names["result"], names["scene"]
         sys.modules["pitch_arm"].PitchArm.branches = ()
         result = build_surface(scene)
@@ -110,7 +112,7 @@ def test_an_own_arm_whose_solutions_have_no_names(tmp_path: Path) -> None:
 
 
 def test_what_is_not_named_is_not_imported(tmp_path: Path) -> None:
-    with followed("add-a-part", tmp_path, run=False):
+    with followed("extend", PARTS_AND_TESTS, tmp_path, run=False):
         build_surface(shipped("wok", 50))
         assert "torus_part" not in sys.modules
         Scene.read("torus.toml")
@@ -122,13 +124,13 @@ def test_what_is_not_named_is_not_imported(tmp_path: Path) -> None:
     [
         (("torus_part:Torus", "torus_part:Tyre"), "cannot be loaded: AttributeError"),
         (("torus_part:Torus", "no_such_module:Torus"), "cannot be loaded: ModuleNotFound"),
-        (("torus_part:Torus", "torus_part:Surface"), "is no Part"),
+        (("torus_part:Torus", "torus_part:mesh_surface"), "is no Part"),
         (("torus = ", "tyre = "), "there is no 'torus'; there are .*, mesh, tyre"),
         (("torus = ", "torus = torus_part:Part\ntorus = "), "is registered as .* and as "),
     ],
 )
 def test_faulty_registrations(tmp_path: Path, change: tuple[str, str], message: str) -> None:
-    with followed("add-a-part", tmp_path, run=False):
+    with followed("extend", PARTS_AND_TESTS, tmp_path, run=False):
         points = tmp_path / "toy-1.0.dist-info" / "entry_points.txt"
         points.write_text(points.read_text().replace(*change))
         with pytest.raises(InputError, match=message) as caught:
@@ -137,12 +139,12 @@ def test_faulty_registrations(tmp_path: Path, change: tuple[str, str], message: 
 
 
 def test_no_reason_has_two_meanings(tmp_path: Path) -> None:
-    with followed("add-a-validity-test", tmp_path) as names:
+    with followed("extend", PARTS_AND_TESTS, tmp_path) as names:
         zone = names["scene"].validity_test[0]
         type(zone).name = "torque"
         with pytest.raises(InputError, match="a reason 'torque' already") as caught:
             prepare(names["scene"])
-        assert (caught.value.file, caught.value.field) == ("zone.toml", "validity_test[0]")
+        assert (caught.value.file, caught.value.field) == ("torus.toml", "validity_test[0]")
 
 
 def test_an_unknown_family_of_arms() -> None:

@@ -61,10 +61,15 @@ class Block:
     text: str
 
 
-def blocks(guide: str) -> list[Block]:
-    """The blocks of code of a guide in docs/how-to, in their order."""
+def section(guide: str, heading: str = "") -> str:
+    """A guide in docs/how-to, or its section under a heading of the second level."""
     page = (ROOT / "docs" / "how-to" / f"{guide}.md").read_text(encoding="utf-8")
-    return [Block(*found) for found in BLOCK.findall(page)]
+    return page.split(f"\n## {heading}\n")[1].partition("\n## ")[0] if heading else page
+
+
+def blocks(guide: str, heading: str = "") -> list[Block]:
+    """The blocks of code of a guide or of a section, in their order."""
+    return [Block(*found) for found in BLOCK.findall(section(guide, heading))]
 
 
 def follow(block: Block, folder: Path) -> None:
@@ -104,8 +109,10 @@ def run(command: list[str], folder: Path, path: Path) -> subprocess.CompletedPro
 
 
 @contextmanager
-def followed(guide: str, folder: Path, *, run: bool = True) -> Iterator[dict[str, Any]]:
-    """Do what the guide ``docs/how-to/GUIDE.md`` says, in an empty folder beside ``models``.
+def followed(
+    guide: str, heading: str, folder: Path, *, run: bool = True
+) -> Iterator[dict[str, Any]]:
+    """Do what a section of a guide in docs/how-to says, in an empty folder beside ``models``.
 
     A block that a file's name introduces is written to that file; entry points of
     ``pyproject.toml`` are found afterwards as if the distribution had been installed; what is left
@@ -116,7 +123,7 @@ def followed(guide: str, folder: Path, *, run: bool = True) -> Iterator[dict[str
     """
     (folder / "models").symlink_to(ROOT / "models")
     code = ""
-    for block in blocks(guide):
+    for block in blocks(guide, heading):
         if block.introduced.startswith("`"):
             follow(block, folder)
         elif block.language == "python":

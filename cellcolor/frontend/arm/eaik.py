@@ -144,7 +144,7 @@ class EaikKinematics(InverseKinematics):
 _UNKNOWN = (
     "EAIK knows no closed form for this arm: its axes neither meet in a wrist nor are three of "
     "them parallel; 'offset-wrist' solves arms whose axes 2 and 3 are parallel and 4 and 5 meet, "
-    "and an own solver can be named (docs/how-to/add-a-family-of-arms.md)"
+    "and an own solver can be named (docs/how-to/extend.md)"
 )
 
 
@@ -162,7 +162,7 @@ def _solver(axes: Axes):  # type: ignore[no-untyped-def]  # EAIK has no types
             "robot.kinematics",
             "the family 'eaik' needs the package EAIK (the extra 'arms'), which has no wheel for "
             "every Python; 'ur' and own solvers work without it "
-            "(docs/how-to/add-a-family-of-arms.md)",
+            "(docs/how-to/extend.md)",
         ) from error
     steps = np.diff(axes.points, axis=0, prepend=np.zeros((1, 3)))
     solver = HPRobot(axes.directions, np.vstack([steps, np.zeros((1, 3))]))

@@ -1,4 +1,4 @@
-"""Every random family by name, and who draws from it (docs/how-to/add-a-family.md).
+"""Every random family by name, and who draws from it (docs/how-to/extend.md).
 
 Each is a function of a seed.
 """
