@@ -198,8 +198,8 @@ class PolygonSurface:
         Returns:
             For each edge and seam the curves that a way crosses an odd number of times which leads
             from where the polygon on the left begins, across the edge, to where the one on the
-            right begins. It does not matter where on the edge, for there a curve has passed
-            either on both sides or on none.
+            right begins. It does not matter where on the edge: a crossing of the edge itself
+            lies before that place in just one of the two polygons' lists.
         """
         passed: dict[int, int] = {}
         for polygon in self.polygons.values():

@@ -181,12 +181,7 @@ def connections(m: SectorModel) -> None:
             continue
         colors = [graph.darts[dart].colors for dart in loops[0]]
         most = best_grouping(colors).connections
-        # Where not all common colors are joinable, a dart may show one and not be joined.
-        joined = [
-            1 - m.apart[m.link_at[dart]][0]
-            for dart in loops[0]
-            if dart in m.link_at and m.apart[m.link_at[dart]][1] is None
-        ]
+        joined = [1 - m.apart[m.link_at[dart]][0] for dart in loops[0]]
         changes = [m.apart[link][0] for link in m.ring_of[cell]]
         m.model.add(sum(own.get(cell, [])) + 2 + sum(changes) >= 2 * (sum(joined) - most))
 
@@ -196,15 +191,9 @@ def zeros(m: SectorModel) -> None:
 
     A dart in state 0 shows the color of the sub-cell before it.
     """
-    sectors, graph, v = m.sectors, m.sectors.graph, m.variables
     for cell, ring in m.ring_of.items():
-        darts = graph.loops[cell][0]
-        for place, dart in enumerate(darts):
-            change = m.apart[ring[place - 1]][0]
-            if dart in m.link_at:
-                m.model.add_bool_or([~change, ~m.apart[m.link_at[dart]][0]])
-            for c in sorted(graph.colors[cell] - graph.darts[dart].colors):
-                m.model.add_bool_or([~change, ~v.color[sectors.at[dart], c]])
+        for place, dart in enumerate(m.sectors.graph.loops[cell][0]):
+            m.model.add_implication(m.apart[ring[place - 1]][0], ~m.apart[m.link_at[dart]][0])
 
 
 DEFINING: Mapping[str, Callable[[SectorModel], None]] = {

@@ -23,7 +23,7 @@ from cellcolor.solvers.cpsat.painting import Painting
 from cellcolor.solvers.cpsat.sectors import painting_of_sectors, sector_graph
 
 MOST_LITERALS = 100_000
-"""The most literals for the colors of sectors; the model has about 25 times as many constraints."""
+"""The most literals for the colors of sectors; the model has about 17 times as many constraints."""
 
 Pair = tuple[int, int]
 

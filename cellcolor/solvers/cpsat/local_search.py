@@ -48,9 +48,6 @@ FREE, USED, IN_VAIN, GROWTH = 0.01, 0.02, 0.05, 1.0003
 it, and when that is taken back. The factor by which both grow with each move, so that old rises
 count less."""
 
-FEW_MOVES = 5
-"""Moves in vain for each segment that show what a start is good for."""
-
 PAUSE = 20
 """Moves in vain before a division is made of the nodes, which takes time by the size of the whole:
 in the beginning nearly every move gains something."""

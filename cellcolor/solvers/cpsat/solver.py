@@ -141,14 +141,10 @@ class _Search:
                 graph, division = self._start[0], start
         notes = {note for part in self._parts for note in part.notes}
         sizes = [part.model_size for part in self._parts if part.model_size is not None]
-        model = None
-        if sizes:
-            variables, constraints = (
-                (size.variables for size in sizes),
-                (s.constraints for s in sizes),
-            )
-            model = ModelSize(sum(variables), sum(constraints))
-        return Answer(division, graph.seams, self._bounds(), tuple(sorted(notes)), model)
+        whole = ModelSize(sum(s.variables for s in sizes), sum(s.constraints for s in sizes))
+        return Answer(
+            division, graph.seams, self._bounds(), tuple(sorted(notes)), whole if sizes else None
+        )
 
     def _each(self, step: Callable[..., None], share: float) -> None:
         """One step of each open part, in a share of the time that is left.
