@@ -52,8 +52,7 @@ class CompleteModel(SectorModel):
         self.instance, self.strands = instance, strands
         self._loops = loops_of(instance)
         self._places = seam_places(instance, self._loops)
-        enough = enough_crossings(instance)  # more strands of an edge are of no use
-        self._each = {edge: int(min(strands, most)) for edge, most in enough.items()}
+        self._each = dict.fromkeys(instance.live_edges, strands)
         self._graph = complete_graph(instance, self._each, self._loops, self._places)
         super().__init__(self._graph, color_regions(instance), groups, deadline)
         self.hint(self._whole())
