@@ -250,7 +250,7 @@ def plan(
         raise click.UsageError("--required needs --cover: without it everything has to be")
 
     from cellcolor.cli.inputs import with_tolerance
-    from cellcolor.door.plan_files import KINDS, check_folder
+    from cellcolor.door.plan_files import check_folder
     from cellcolor.door.planned import NothingCovered, PlanOutOfTime
     from cellcolor.door.planning import plan as planned_of
 
@@ -266,7 +266,7 @@ def plan(
             )
             report("files and page")
             begun = time.perf_counter()
-            planned.save(output, export_step)
+            written = planned.save(output, export_step)
             stages = {**planned.seconds, "files and page": time.perf_counter() - begun}
     except NothingCovered as error:
         say_lines(error.report)
@@ -283,7 +283,7 @@ def plan(
         say(f"  {fault}")
     spent = ", ".join(f"{stage} {seconds:.2f}" for stage, seconds in stages.items())
     say(f"seconds  {sum(stages.values()):.2f}: {spent}")
-    say(f"wrote {count(len(KINDS), 'file')} to {output}: look at {output / 'report.html'}")
+    say(f"wrote {count(len(written), 'file')} to {output}: look at {output / 'report.html'}")
     if set(verdict.fault_counts) - {"unplanned"}:
         return Exit.INVALID
     return Exit.done_if(verdict.valid and planned.solution.status == "optimal")

@@ -76,15 +76,19 @@ def _from_archive(path: Path) -> JointSolutions:
     except OSError as error:
         raise InputError(None, None, error.strerror or "cannot be read") from error
     except (ValueError, EOFError, zipfile.BadZipFile) as error:
-        raise InputError(None, None, f"is no archive of arrays: {error}") from error
+        raise InputError(None, None, "is no archive of arrays (.npz)") from error
     _check_members(members)
     flat, offsets = members["configurations"], members.pop("offsets", None)
     if offsets is None or offsets.ndim != 1 or offsets.dtype.kind not in "iu":
         raise InputError(None, "offsets", "must be whole numbers (n + 1,), where vertices begin")
-    wrong = np.flatnonzero(np.diff(offsets, prepend=0) < 0)
-    if not len(offsets) or offsets[0] != 0 or len(wrong) or offsets[-1] != len(flat):
-        message = f"must rise from 0 to {len(flat)}, the number of configurations"
+    vertices = len(members["vertices"])
+    if len(offsets) != vertices + 1:
+        message = f"has {len(offsets)} entries, {vertices} vertices need {vertices + 1}"
         raise InputError(None, "offsets", message)
+    falls = np.flatnonzero(np.diff(offsets) < 0)
+    if offsets[0] != 0 or len(falls) or offsets[-1] != len(flat):
+        message = f"must rise from 0 to {len(flat)}, the number of configurations"
+        raise InputError(None, f"offsets[{falls[0] + 1}]" if len(falls) else "offsets", message)
     spans = list(zip(offsets[:-1].tolist(), offsets[1:].tolist(), strict=True))
     members["configurations"] = [flat[first:end] for first, end in spans]
     if "names" in members:

@@ -178,7 +178,8 @@ def _table(configurations: Sequence[ArrayLike]) -> tuple[Array, list[int]]:
         try:
             own = np.asarray(given, dtype=float)
         except (TypeError, ValueError):
-            raise InputError(None, field, "is no array (k, joints) of numbers") from None
+            message = "is no array (k, joints) of numbers, all of one length"
+            raise InputError(None, field, message) from None
         if own.size == 0:
             own = own.reshape(0, width or 0)
         if own.ndim != 2:

@@ -52,10 +52,10 @@ def test_a_file_of_joint_solutions_is_labelled(
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"offsets": np.array([0, 2, 4])}, "offsets: must rise from 0 to 5"),
-        ({"offsets": np.array([0, 4, 2, 5])}, "offsets: must rise from 0 to 5"),
+        ({"offsets": np.array([0, 2, 4])}, "offsets: has 3 entries, 3 vertices need 4"),
+        ({"offsets": np.array([0, 2, 4, 4])}, "offsets: must rise from 0 to 5"),
+        ({"offsets": np.array([0, 4, 2, 5])}, "offsets[2]: must rise from 0 to 5"),
         ({"offsets": np.array([0.0, 2.0, 4.0, 5.0])}, "offsets: must be whole numbers"),
-        ({"offsets": np.array([0, 2, 5])}, "vertex_colors: has 2 entries for 3 vertices"),
         ({"names": np.array(["up"])}, "names: has 1 entries for 5 configurations"),
         ({"joints": np.array([1])}, "joints: is unknown"),
         ({"configurations": np.full((5, 2), np.nan)}, "configurations[0][0][0]: is not a finite"),

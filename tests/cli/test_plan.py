@@ -93,6 +93,7 @@ def test_all_files_are_there_and_belong_together(
     assert run("show", folder / "instance.json", "--reason", "-o", tmp_path / "reach.html") == 0
     said = capsys.readouterr()
     assert "2 segments, 1 lift-off, optimal" in said.out
+    assert f"wrote {len(list(folder.iterdir()))} files to {folder}" in said.out
     assert "report.html" in said.out
     assert "warning: the object's edges are up to" in said.err  # what `build` warns of
 
