@@ -98,8 +98,8 @@ WRITTEN = written()
 def test_there_is_no_other_schema() -> None:
     stored = sorted(path.name.removesuffix(".schema.json") for path in FOLDER.glob("*.json"))
     assert stored == sorted([*FILES, *TABLES])
-    page = (FOLDER / "README.md").read_text(encoding="utf-8")
-    assert all(f"({file}.schema.json)" in page for file in stored)
+    page = (FOLDER.parent / "formats.md").read_text(encoding="utf-8")
+    assert all(f"(schemas/{file}.schema.json)" in page for file in stored)
 
 
 @pytest.mark.parametrize("file", [*FILES, *TABLES])
