@@ -75,9 +75,12 @@ def _from_archive(path: Path) -> JointSolutions:
             members: dict[str, Any] = {name: archive[name] for name in archive.files}
     except OSError as error:
         raise InputError(None, None, error.strerror or "cannot be read") from error
-    except (ValueError, EOFError, zipfile.BadZipFile) as error:
+    except (ValueError, TypeError, EOFError, zipfile.BadZipFile) as error:
         raise InputError(None, None, "is no archive of arrays (.npz)") from error
     _check_members(members)
+    for name in ("vertices", "faces", "configurations"):
+        if members[name].ndim != 2:
+            raise InputError(None, name, f"has {members[name].ndim} dimensions, must have 2")
     flat, offsets = members["configurations"], members.pop("offsets", None)
     if offsets is None or offsets.ndim != 1 or offsets.dtype.kind not in "iu":
         raise InputError(None, "offsets", "must be whole numbers (n + 1,), where vertices begin")

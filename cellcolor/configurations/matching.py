@@ -155,9 +155,8 @@ class Matching:
                     if verdict is not False:
                         pairs.append(np.array([[first + row, a, b]]))
                         known = verdict is True
-                        strength.append(
-                            np.array([np.inf if known else nearest[row, a, b] / step[row, a, b]])
-                        )
+                        near_by = nearest[row, a, b] / max(step[row, a, b], _ROUNDING)
+                        strength.append(np.array([np.inf if known else near_by]))
                     if self.linked is None and step[row, a, b] <= DOUBTFUL * self.max_step:
                         i, j = part[row].tolist()
                         doubtful.append(

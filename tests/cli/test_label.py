@@ -58,6 +58,7 @@ def test_a_file_of_joint_solutions_is_labelled(
         ({"offsets": np.array([0.0, 2.0, 4.0, 5.0])}, "offsets: must be whole numbers"),
         ({"names": np.array(["up"])}, "names: has 1 entries for 5 configurations"),
         ({"joints": np.array([1])}, "joints: is unknown"),
+        ({"vertices": np.array(1.0)}, "vertices: has 0 dimensions, must have 2"),
         ({"configurations": np.full((5, 2), np.nan)}, "configurations[0][0][0]: is not a finite"),
     ],
 )
