@@ -125,7 +125,6 @@ def _check_members(members: Mapping[str, Any]) -> None:
 def _from_rows(path: Path, vertices: int) -> JointSolutions:
     configurations: list[list[list[float]]] = [[] for _ in range(vertices)]
     names: list[list[str]] = [[] for _ in range(vertices)]
-    named = False
     rows = csv.reader(read_text(path).splitlines())
     head = [word.strip().lower() for word in next(rows, [])]
     if not head or head[0] != "vertex":

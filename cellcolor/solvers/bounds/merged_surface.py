@@ -178,16 +178,6 @@ class PolygonSurface:
         """The border curves, each as the darts after which it runs."""
         return self._borders.copy()
 
-    @property
-    def is_spheres(self) -> bool:
-        """Whether each component, its borders filled with discs, is a sphere (Euler)."""
-        polygons = [merged_cell for merged_cell, darts in self.polygons.items() if darts]
-        connected: UnionFind[int] = UnionFind(polygons)
-        for left, right in self.sides.values():
-            connected.union(left, right)
-        points, lines = len(self._borders.sets()), len(self.sides)
-        return points - lines + len(polygons) == 2 * len(connected.sets())
-
     def turns(self, crossed: Mapping[int, int]) -> dict[int, int]:
         """Which of some curves lie between the beginnings of two polygons with a common edge.
 
