@@ -16,6 +16,7 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
+from cellcolor.frontend.arm.far_shapes import notes_on_shapes
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
@@ -169,7 +170,8 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     part = PreparedPart(covered, mesh_solid(shape.vertices, shape.faces, deadline))
     _, workplace = _in_place(scene, part, _around(scene, arm, part, deadline))
     judge = Judge(workplace, scene.validity_test)
-    notes = arm.robot.warnings + notes_on_units(scene, arm.kinematics.reach)
+    notes = arm.robot.warnings + notes_on_shapes(arm.robot)
+    notes += notes_on_units(scene, arm.kinematics.reach)
     if covered.faceted:  # a shape is made without
         notes += note_on_crossings(covered.mesh)
     if setup.constraints.collision:
