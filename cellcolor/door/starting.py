@@ -7,8 +7,8 @@ import os
 import re
 import tomllib
 from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from itertools import product
 from os import PathLike
 from pathlib import Path
@@ -20,6 +20,15 @@ import numpy as np
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.extras import require_motion
 from cellcolor.door.parts import inspect
+from cellcolor.door.starting_choices import (
+    CoverChoice,
+    Outside,
+    fixed_line,
+    fixed_of,
+    home_of,
+    last_link,
+    side_of,
+)
 from cellcolor.door.starting_texts import MARK, SCENE, SETUP, TOOL
 from cellcolor.errors import InputError, naming
 from cellcolor.files.paths import path_of
@@ -74,14 +83,18 @@ def new(
     tool: str | PathLike[str] | None = None,
     tip_link: str = "tip",
     unit: str | None = None,
+    outside: Outside | None = None,
+    cover: CoverChoice | None = None,
+    fix: Mapping[str, float] | None = None,
     time_limit: TimeLimit = None,
     progress: Callable[[str], None] | None = None,
 ) -> Started:
     """Write a scene and its setup, with every key explained, ready for ``cellcolor plan``.
 
-    The arm has six turning joints. The function finds its family, its flange and the links that
-    always overlap. It puts the part where most of it can be reached, of nine places in front of the
-    robot, and proposes a free home position.
+    The arm has six turning joints; rails and joints beside the chain stand still. The function
+    finds its family, its flange and the links that always overlap. It puts the part where most of
+    it can be reached, of nine places in front of the robot, and proposes a free home position over
+    it. What it assumed is in the notes.
 
     Args:
         part: a mesh file (STL, OBJ, PLY).
@@ -90,6 +103,11 @@ def new(
         tool: a URDF of the tool; None for a polisher of 100 mm, whose URDF is written as well.
         tip_link: of the tool.
         unit: ``m``, ``mm``, ``cm`` or ``in``, of the mesh; without it the likely one.
+        outside: of an open part, the side that faces ``toward`` the robot or ``away`` from it, or
+            ``flip``, the other one than its faces have; of a shell, the side that is covered.
+        cover: ``largest`` for the largest piece between sharp edges, ``all``; without it one side
+            of a shell, all of other parts.
+        fix: positions of joints that stand still, rad, or m of prismatic ones.
         time_limit: seconds, None for no limit.
         progress: told what is being done.
 
@@ -109,12 +127,13 @@ def new(
     tip = "tip" if tool is None else tip_link
 
     tell("the arm")
-    robot = arm_of(urdf, None if tool is None else path_of(tool), tip, place)
+    robot = arm_of(urdf, None if tool is None else path_of(tool), tip, place, fix or {})
     tell("the part")
-    part_keys = part_keys_of(mesh, place, inspect(mesh, unit=unit, time_limit=deadline))
+    looked = inspect(mesh, unit=unit, time_limit=deadline)
+    part_keys, side = part_keys_of(mesh, place, looked, outside, cover)
     tell("where the part can stand")
     best, share = best_place(robot, mesh, part_keys, deadline)
-    home = _home(best)
+    home, posture = home_of(best)
     robot.keys.update(_found(best, home))
     part_keys["position"] = json.dumps(list(best.scene.placement.position_m))
     content = {
@@ -124,9 +143,8 @@ def new(
     }
     place.mkdir(parents=True, exist_ok=True)
     write([Output(place / name, kinds[name], [content[name].encode()]) for name in names])
-    return Started(
-        place / "scene.toml", share, tuple(_notes(best, robot.touching, home, tool is None))
-    )
+    assumed = (f"unit {looked.unit}: {looked.unit_reason}", side, posture)
+    return Started(place / "scene.toml", share, (*assumed, *_notes(best, robot, tool is None)))
 
 
 @dataclass(frozen=True)
@@ -139,6 +157,8 @@ class FoundArm:
         keys: what is filled into the setup's text.
         reach: of the arm, m.
         touching: pairs of its links that overlap in every posture.
+        fixed: positions of joints that stand still, rad or m.
+        base_m: x and y of its first joint in the world.
     """
 
     urdf: Path
@@ -146,6 +166,8 @@ class FoundArm:
     keys: dict[str, str]
     reach: float = 0.0
     touching: tuple[tuple[str, str], ...] = ()
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    base_m: tuple[float, float] = (0.0, 0.0)
 
     @property
     def setup(self) -> Setup:
@@ -158,18 +180,25 @@ class FoundArm:
         return Setup(**table)
 
 
-def arm_of(urdf: Path, tool: Path | None, tip: str, folder: Path) -> FoundArm:
+def arm_of(
+    urdf: Path, tool: Path | None, tip: str, folder: Path, fix: Mapping[str, float]
+) -> FoundArm:
     """The arm with the first family that fits it; its setup will be in the folder.
 
     Raises:
         InputError: none does.
     """
+    from cellcolor.frontend.arm.assembly import fix_joints
+    from cellcolor.frontend.arm.kinematics import forward
     from cellcolor.frontend.arm.urdf import load_urdf
     from cellcolor.frontend.reach.always_touching import always_touching
     from cellcolor.frontend.reach.prepared_arm import prepare_arm
 
     arm = load_urdf(urdf)
-    flange = next((link for link in _FLANGES if link in arm.parent), None) or _last_link(arm.parent)
+    flange = next((link for link in _FLANGES if link in arm.parent), None) or last_link(arm.parent)
+    fixed = fixed_of(arm, flange, fix)
+    with naming(urdf):
+        arm = fix_joints(arm, fixed)
     chain = arm.chain(flange)
     moved = next((at for at, link in enumerate(chain) if arm.joint_above.get(link) in arm.kinds), 0)
     standing = [link for link in chain[: moved + 1] if link in arm.shapes]
@@ -181,6 +210,7 @@ def arm_of(urdf: Path, tool: Path | None, tip: str, folder: Path) -> FoundArm:
         "tool": json.dumps("tool.urdf" if tool is None else _relative(tool, folder)),
         "tip": json.dumps(tip),
         "standing": json.dumps(standing),
+        "fixed": fixed_line(fixed),
         "force": "false" if arm.weightless else "true",
         "why_force": "the URDF lacks masses or efforts" if arm.weightless else "true or false",
         "touching": "[]",
@@ -202,8 +232,14 @@ def arm_of(urdf: Path, tool: Path | None, tip: str, folder: Path) -> FoundArm:
             faults.append(error)
             continue
         touching = json.dumps([list(pair) for pair in pairs])
-        return replace(found, keys=found.keys | {"touching": touching}, reach=reach, touching=pairs)
-    raise faults[1] if faults[1].file else faults[1].in_file(str(urdf))
+        robot = prepared.robot
+        x, y, _ = forward(robot, np.zeros((1, robot.joints))).origin[0, 1].tolist()
+        keys = found.keys | {"touching": touching}
+        return FoundArm(urdf, tool, keys, reach, pairs, fixed, (x, y))
+    fault = faults[1] if faults[1].file else faults[1].in_file(str(urdf))
+    if "fixed_joints" in fault.message + (fault.field or ""):
+        raise InputError(fault.file, fault.field, f"{fault.message} (here: --fix JOINT=POSITION)")
+    raise fault
 
 
 def _mount(arm: Urdf, flange: str) -> str:
@@ -252,36 +288,31 @@ def _relative(file: Path, folder: Path) -> str:
     return Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()
 
 
-def _last_link(parent: dict[str, str]) -> str:
-    """The link farthest from the root; of several the first."""
-    if not parent:
-        return ""
-
-    def depth(link: str) -> int:
-        count = 0
-        while link in parent:
-            link, count = parent[link], count + 1
-        return count
-
-    return max(parent, key=depth)
-
-
-def part_keys_of(mesh: Path, folder: Path, looked: Inspection) -> dict[str, str]:
-    """What is filled into the scene's text.
+def part_keys_of(
+    mesh: Path,
+    folder: Path,
+    looked: Inspection,
+    outside: Outside | None,
+    cover: CoverChoice | None,
+) -> tuple[dict[str, str], str]:
+    """What is filled into the scene's text, and which side is covered.
 
     Raises:
-        InputError: the mesh cannot be used, not even repaired.
+        InputError: the mesh cannot be used, not even repaired, or has no such side.
     """
-    from cellcolor.frontend.parts.mesh_file import UNITS
+    from cellcolor.frontend.parts.mesh_file import UNITS, load_mesh
 
     if looked.refusal_after_repair is not None:
         raise InputError(str(mesh), None, looked.refusal_after_repair)
-    return {
+    unit = UNITS[looked.unit]
+    side = side_of(load_mesh(mesh, unit, mend=bool(looked.repairs)), outside, cover)
+    keys = {
         "name": json.dumps(mesh.stem),
         "part": json.dumps(_relative(mesh, folder)),
-        "meters_per_unit": str(UNITS[looked.unit]),
+        "meters_per_unit": str(unit),
         "repair": "true" if looked.repairs else "false",
     }
+    return keys | side.keys, side.note
 
 
 def best_place(
@@ -309,7 +340,8 @@ def best_place(
     fault: InputError | None = None
     failed: Counter[str] = Counter()
     for far, raised in product(_FARTHER, _HIGHER):
-        position = far * arm.reach - middle[0], -middle[1], raised * arm.reach - low[2]
+        ahead, beside = arm.base_m[0] + far * arm.reach, arm.base_m[1]
+        position = ahead - middle[0], beside - middle[1], raised * arm.reach - low[2]
         try:
             place = Placement(position_m=(np.round(position, 3) + 0.0).tolist())
             if prepared is None:
@@ -341,19 +373,6 @@ def best_place(
     return best
 
 
-def _home(prepared: PreparedScene) -> list[float] | None:
-    """A free position near the middle of the joints' limits, rad."""
-    from cellcolor.motion.free_space import FreeSpace
-    from cellcolor.motion.home import free_near
-    from cellcolor.motion.limits import motion_of
-
-    robot = prepared.robot
-    lower = np.where(np.isfinite(robot.lower), robot.lower, -np.pi)
-    upper = np.where(np.isfinite(robot.upper), robot.upper, np.pi)
-    motion = motion_of(prepared)
-    return free_near(FreeSpace(prepared, motion.clearance_m), np.round((lower + upper) / 2, 2))
-
-
 def _found(prepared: PreparedScene, home: list[float] | None) -> dict[str, str]:
     """The keys of the setup's file that only the prepared scene tells."""
     robot = prepared.robot
@@ -374,21 +393,18 @@ def _velocities(robot: Robot) -> str:
     return f"{'' if lacks else '# '}{line}  # {why}"
 
 
-def _notes(
-    prepared: PreparedScene,
-    touching: tuple[tuple[str, str], ...],
-    home: list[float] | None,
-    own_tool: bool,
-) -> Iterator[str]:
+def _notes(prepared: PreparedScene, arm: FoundArm, own_tool: bool) -> Iterator[str]:
+    from cellcolor.frontend.report import survey_of
+
+    for joint, position in arm.fixed.items():
+        yield f"{joint} stands still at {position:g} (--fix {joint}=POSITION for another one)"
     if own_tool:
         yield "tool.urdf is a polisher of 100 mm: put your tool's shape and length into it"
-    for first, second in touching:
+    for first, second in arm.touching:
         yield f"{first} and {second} overlap in every posture: setup.toml lets them touch"
     yield "setup.toml has accelerations of 5 rad/s²: take those of the arm's data sheet"
     if np.isnan(prepared.robot.velocity).any():
         yield "setup.toml has velocities of 1 rad/s, since the URDF has none"
     if not prepared.setup.constraints.force:
         yield "torques are not tested, since the URDF lacks masses or efforts"
-    if home is None:
-        yield "no free home position was found: the motion may begin and end anywhere"
-    yield from prepared.notes
+    yield from survey_of(prepared).warnings + prepared.notes

@@ -25,7 +25,7 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import Coloring, find_cracks
 from cellcolor.frontend.reach.limit_colors import LimitColors, limit_colors
-from cellcolor.frontend.report import BuildReport, color_reports, count_reasons, survey
+from cellcolor.frontend.report import BuildReport, color_reports, count_reasons, survey_of
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Task
 from cellcolor.frontend.stage_clock import Progress, StageClock
@@ -304,7 +304,7 @@ def _report(
     farthest = candidates.reasons.max(axis=1)[~reached]
     remarks = prepared.kinematics.remarks(surface.vertices, -surface.normals)
     return BuildReport(
-        survey=survey(surface, prepared.kinematics.viewpoints),
+        survey=survey_of(prepared),
         vertices=len(areas),
         reachable=int(reached.sum()),
         area_m2=float(areas.sum()),

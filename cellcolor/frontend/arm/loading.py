@@ -14,6 +14,7 @@ from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.assembly import Vector, fix_joints, mount, pinocchio_text
 from cellcolor.frontend.arm.body import Body, Shapes, place_shapes
 from cellcolor.frontend.arm.robot import FollowingFrame, Robot
+from cellcolor.frontend.arm.tool_sense import notes_on_tool
 from cellcolor.frontend.arm.urdf import (
     CONTINUOUS,
     PRISMATIC,
@@ -107,12 +108,13 @@ def load_robot(
         replace(body, joint=_carrier(whole, body.link, number, body.joint)) for body in bodies
     )
     tip = model.frames[model.getFrameId(tip_link, pin.FrameType.BODY)]
+    axes = _axes(model)
     names = tuple(model.names[1:])
     endless = np.array([whole.kinds[name] == CONTINUOUS for name in names], dtype=bool)
     return Robot(
         files=(arm_file, tool_file),
         placement=np.array([model.jointPlacements[i].homogeneous for i in range(1, joints + 1)]),
-        axis=_axes(model),
+        axis=axes,
         slides=np.array([whole.kinds[name] == PRISMATIC for name in names], dtype=bool),
         lower=np.where(endless & (lower <= limits[0]), -np.inf, lower),
         upper=np.where(endless & (upper >= limits[1]), np.inf, upper),
@@ -124,7 +126,7 @@ def load_robot(
         bodies=bodies,
         tested_pairs=_tested_pairs(whole, bodies, may_touch),
         joint_names=names,
-        warnings=_warnings(whole),
+        warnings=_warnings(whole) + notes_on_tool(model, tool.root, tip_link, axes),
         model=model,
         geometry=geometry,
         stand_ins=stand_ins,

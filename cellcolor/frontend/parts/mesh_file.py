@@ -40,11 +40,14 @@ class MeshObject(Part):
     meters_per_unit: Positive
     max_edge_m: Positive | None = None
     repair: bool = False
+    flip: bool = False
+
+    NEWER = ("flip",)
 
     def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:
         """The mesh as it is, or refined or repaired on request; see :func:`load_mesh`."""
         units, longest = self.meters_per_unit, self.max_edge_m
-        return load_mesh(folder / self.file, units, longest, self.repair, deadline)
+        return load_mesh(folder / self.file, units, longest, self.repair, deadline, self.flip)
 
 
 def load_mesh(
@@ -53,6 +56,7 @@ def load_mesh(
     max_edge_m: float | None = None,
     mend: bool = False,
     deadline: Deadline = NEVER,
+    flip: bool = False,
 ) -> Surface:
     """A mesh file as a surface, checked; see :func:`~cellcolor.frontend.parts.mesh.mesh_surface`.
 
@@ -62,6 +66,7 @@ def load_mesh(
         meters_per_unit: of the file's coordinates.
         max_edge_m, mend: see :func:`~cellcolor.frontend.parts.mesh.mesh_surface`.
         deadline: when to give up; not looked at while another library reads the file.
+        flip: turn the faces over; of an open mesh the other side is then the outside.
 
     Raises:
         InputError: missing or unreadable file, or the mesh cannot be used; names file and element.
@@ -69,6 +74,7 @@ def load_mesh(
     try:
         vertices, faces = read_mesh(file, deadline)
         check_faces(len(faces))
+        faces = np.ascontiguousarray(faces[:, ::-1]) if flip else faces
         return mesh_surface(vertices, faces, meters_per_unit, max_edge_m, mend, deadline)
     except InputError as error:
         # Of halving edges the scene is to blame, which alone can say that it was asked for.
