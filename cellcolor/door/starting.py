@@ -367,7 +367,7 @@ def best_place(
         message = (
             "nothing of the part can be reached at any of nine places before the robot; most often "
             f"a posture fails by {failed.most_common(1)[0][0]!r}: does the part's outside face the "
-            "robot, and is its size one for this arm?"
+            "robot (--outside flip), and is its size one for this arm?"
         )
         raise InputError(str(mesh), None, message)
     return best

@@ -26,6 +26,7 @@ from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_units
 from cellcolor.frontend.parts.inspection import note_on_crossings
 from cellcolor.frontend.parts.placement import Placement
+from cellcolor.frontend.parts.rounding import note_on_triangles
 from cellcolor.frontend.parts.sides import note_on_shell
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.always_touching import always_touching, check_capsules
@@ -178,6 +179,7 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     notes += notes_on_units(scene, arm.kinematics.reach)
     if covered.faceted:  # a shape is made without
         notes += note_on_crossings(covered.mesh) + note_on_shell(covered)
+        notes += note_on_triangles(surface, setup.task.rounding_m)
     if setup.constraints.collision:
         home = None if setup.motion is None else setup.motion.home
         with naming(setup.file):

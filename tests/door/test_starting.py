@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import tomllib
 from pathlib import Path
 
@@ -135,6 +136,10 @@ def test_what_cannot_be_used_is_one_line_and_nothing_is_written(
     scara = ROBOTS / "cobra600.urdf"
     faulty = tmp_path / "faulty.stl"
     faulty.write_text("solid\nendsolid\n")
+    long = tmp_path / "long.urdf"  # its lengths are in millimeters
+    numbers = r'<origin xyz="(\S+) (\S+) (\S+)"'
+    text = (ROBOTS / "ur5.urdf").read_text()
+    long.write_text(re.sub(numbers, r'<origin xyz="\1e3 \2e3 \3e3"', text))
     pinched = tmp_path / "pinched.obj"  # two triangles with one vertex in common
     corners = ("0 0 0", "90 0 0", "0 90 0", "-90 0 0", "0 -90 0")
     pinched.write_text("".join(f"v {at}\n" for at in corners) + "f 1 2 3\nf 1 4 5\n")
@@ -142,6 +147,7 @@ def test_what_cannot_be_used_is_one_line_and_nothing_is_written(
     for part, urdf, options, named in (
         (plate, scara, [], "cobra600.urdf"),
         (plate, tmp_path / "none.urdf", [], "none.urdf"),
+        (plate, long, [], "long.urdf: robot: the arm reaches"),
         (faulty, arm, [], "faulty.stl"),
         (pinched, arm, [], f"repair it first: cellcolor repair {pinched} -o pinched-repaired.obj"),
         (plate, arm, ["--unit", "m"], "the part is 160 x 120"),

@@ -15,7 +15,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from cellcolor.data.wording import beyond_turns, looks_like_degrees
+from cellcolor.data.wording import beyond_turns, looks_like_degrees, looks_like_millimeters
 from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import read_text
 
@@ -119,6 +119,7 @@ def _shape(field: str, collision: ET.Element) -> LinkShape:
     return LinkShape(kind, tuple(sizes))
 
 
+_LONGEST = 60.0  # m; of a rail
 _MOST_DEGREES = 3600  # of a joint's limit; beyond, as 999999, it means that there is none
 CONTINUOUS, PRISMATIC = "continuous", "prismatic"
 _MOVING = ("revolute", CONTINUOUS, PRISMATIC)
@@ -340,7 +341,7 @@ def _tree(
         kind = joint.get("type", "")
         if kind in _MOVING:
             if kind != CONTINUOUS:
-                _limits(name, joint)
+                _limits(name, joint, kind)
             _axis(name, joint)
             kinds[name] = kind
         elif kind != "fixed":
@@ -376,7 +377,7 @@ def check_follower(name: str, joint: ET.Element, kind: str) -> None:
         message = f"{kind!r}: only revolute, continuous and prismatic joints can follow another one"
         raise InputError(None, f"joint[{name}].type", message)
     if kind != CONTINUOUS and joint.find("limit") is not None:
-        _limits(name, joint)
+        _limits(name, joint, kind)
     _axis(name, joint)
 
 
@@ -397,18 +398,20 @@ def _weightless(
                 yield error
 
 
-def _limits(name: str, joint: ET.Element) -> None:
+def _limits(name: str, joint: ET.Element, kind: str) -> None:
     field = f"joint[{name}].limit"
     limit = joint.find("limit")
     lower = _number(field, limit, "lower")
     upper = _number(field, limit, "upper")
     if lower >= upper:
         raise InputError(None, field, f"lower {lower} is not below upper {upper}")
-    if joint.get("type") != PRISMATIC:
-        most = max(upper, lower, key=abs)
-        if beyond_turns(most, 2) and abs(most) <= _MOST_DEGREES:
-            message = f"{looks_like_degrees(most)} (a joint that turns endlessly is 'continuous')"
-            raise InputError(None, field, message)
+    most = max(upper, lower, key=abs)
+    if kind == PRISMATIC:
+        if _LONGEST < abs(most) <= 1000 * _LONGEST:
+            raise InputError(None, field, looks_like_millimeters(most))
+    elif beyond_turns(most, 2) and abs(most) <= _MOST_DEGREES:
+        message = f"{looks_like_degrees(most)} (a joint that turns endlessly is 'continuous')"
+        raise InputError(None, field, message)
 
 
 def _effort(name: str, joint: ET.Element) -> InputError | None:

@@ -275,3 +275,20 @@ def test_soft_limits_are_kept(
     robot = load(written(ARM, "<limit", f'<safety_controller {soft} k_velocity="10"/><limit'))
     assert np.allclose((robot.lower[0], robot.upper[0]), limits)
     assert np.allclose((robot.lower[1:], robot.upper[1:]), [[-2 * np.pi], [2 * np.pi]])
+
+
+def test_velocities_in_degrees_are_said(written: Callable[..., Path]) -> None:
+    robot = load(written(ARM, r'velocity="3.1\d*"', 'velocity="180"', count=2))
+    (text,) = [text for text in robot.warnings if "degrees per second" in text]
+    assert text.endswith("'shoulder_pan_joint' 180 rad/s, 'shoulder_lift_joint' 180 rad/s")
+    assert not load(ROBOTS).warnings
+
+
+def test_a_rail_in_millimeters(written: Callable[..., Path]) -> None:
+    rail = (
+        '<link name="rail"/><joint name="rail_joint" type="prismatic"><parent link="rail"/>'
+        '<child link="base_link"/><axis xyz="0 1 0"/><limit lower="0" upper="3000"/></joint>'
+    )
+    with pytest.raises(InputError, match="3000 looks like millimeters: 3 m") as caught:
+        load(written(ARM, '<link name="base_link">', rail + '<link name="base_link">'))
+    assert caught.value.field == "joint[rail_joint].limit"
