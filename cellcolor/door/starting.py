@@ -26,7 +26,9 @@ from cellcolor.door.starting_choices import (
     fixed_line,
     fixed_of,
     home_of,
+    is_weightless,
     last_link,
+    mount_line,
     side_of,
 )
 from cellcolor.door.starting_texts import MARK, SCENE, SETUP, TOOL
@@ -35,11 +37,7 @@ from cellcolor.files.paths import path_of
 from cellcolor.files.writing import FileKind, Output, check_output, is_folder_or_nothing, write
 
 if TYPE_CHECKING:
-    import xml.etree.ElementTree as ET
-
-    from cellcolor.arrays import Array
     from cellcolor.frontend.arm.robot import Robot
-    from cellcolor.frontend.arm.urdf import Urdf
     from cellcolor.frontend.parts.inspection import Inspection
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.frontend.setup import Setup
@@ -48,8 +46,6 @@ _FLANGES = ("tool0", "flange", "ee_link", "wrist_3_link", "tool_flange")
 _FAMILIES = ("ur", "eaik", "offset-wrist")  # the second says most about an arm that fits none
 _NEEDED = ("pinocchio", "fcl", "igl", "trimesh", "scipy")
 _JOINTS, _ACCELERATION = 6, 5.0  # rad/s^2, which most arms of a meter can
-_ALONG = 1e-3  # rad; an axis so near to another one is along it
-_AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
 _JERK = 1000.0  # rad/s^3, an example
 _MOST_ASKED = 300  # vertices of the part, wherever it is tried
 _FARTHER, _HIGHER = (0.45, 0.6, 0.75), (0.02, 0.2, 0.4)
@@ -202,17 +198,18 @@ def arm_of(
     chain = arm.chain(flange)
     moved = next((at for at, link in enumerate(chain) if arm.joint_above.get(link) in arm.kinds), 0)
     standing = [link for link in chain[: moved + 1] if link in arm.shapes]
+    weightless = bool(arm.weightless) or (tool is not None and is_weightless(load_urdf(tool)))
     keys = {
         "arm": urdf.name,
         "arm_urdf": json.dumps(_relative(urdf, folder)),
         "flange": json.dumps(flange),
-        "mount": _mount(arm, flange),
+        "mount": mount_line(arm, flange),
         "tool": json.dumps("tool.urdf" if tool is None else _relative(tool, folder)),
         "tip": json.dumps(tip),
         "standing": json.dumps(standing),
         "fixed": fixed_line(fixed),
-        "force": "false" if arm.weightless else "true",
-        "why_force": "the URDF lacks masses or efforts" if arm.weightless else "true or false",
+        "force": "false" if weightless else "true",
+        "why_force": "a URDF lacks masses or efforts" if weightless else "true or false",
         "touching": "[]",
         "velocities": "",
         "accelerations": json.dumps([_ACCELERATION] * _JOINTS),
@@ -240,48 +237,6 @@ def arm_of(
     if "fixed_joints" in fault.message + (fault.field or ""):
         raise InputError(fault.file, fault.field, f"{fault.message} (here: --fix JOINT=POSITION)")
     raise fault
-
-
-def _mount(arm: Urdf, flange: str) -> str:
-    """The setup's line that turns the tool's z axis onto the last joint's, if it is not there.
-
-    Some vendors' flanges have their x axis along that of the joint.
-    """
-    from cellcolor.frontend.parts.placement import rpy_from_rotation
-
-    x, y, z = _last_axis(arm, flange)
-    along = np.hypot(x, y) < _ALONG
-    if along and z > 0:
-        return ""
-    # Turned about the axis across both.
-    cross = np.array([[0, 0, x], [0, 0, y], [-x, -y, 0]])
-    onto = np.diag([1, -1, -1]) if along else np.eye(3) + cross + cross @ cross / (1 + z)
-    angles = [round(angle, 9) + 0.0 for angle in rpy_from_rotation(onto)]
-    return f"mount_rpy_rad = {angles}   # turns the tool's z axis onto the last joint's\n"
-
-
-def _last_axis(arm: Urdf, flange: str) -> Array:
-    """The last axis (3,) before the flange, in its frame; outward with all joints at zero."""
-    from cellcolor.frontend.parts.placement import rotation_from_rpy
-
-    joints = {joint.get("name"): joint for joint in arm.xml.findall("joint")}
-    turn, out, link = np.eye(3), np.zeros(3), flange  # of the flange, seen from a link before it
-    axis: Array | None = None
-    while link in arm.parent:
-        joint = joints[arm.joint_above[link]]
-        if axis is None and arm.joint_above[link] in arm.kinds:
-            axis = _numbers(joint.find("axis"), "xyz", "1 0 0") @ turn
-            axis /= np.linalg.norm(axis)
-        if axis is not None and abs(ahead := axis @ (out @ turn)) > _AHEAD:
-            return np.asarray(axis * np.sign(ahead))
-        xyz, rpy = (_numbers(joint.find("origin"), key, "0 0 0") for key in ("xyz", "rpy"))
-        rotation = rotation_from_rpy(*rpy)
-        turn, out, link = rotation @ turn, xyz + rotation @ out, arm.parent[link]
-    return np.array([0.0, 0.0, 1.0]) if axis is None else axis
-
-
-def _numbers(element: ET.Element | None, key: str, usual: str) -> Array:
-    return np.array((usual if element is None else element.get(key, usual)).split(), dtype=float)
 
 
 def _relative(file: Path, folder: Path) -> str:
@@ -369,7 +324,7 @@ def best_place(
             f"a posture fails by {failed.most_common(1)[0][0]!r}: does the part's outside face the "
             "robot (--outside flip), and is its size one for this arm?"
         )
-        raise InputError(str(mesh), None, message)
+        raise InputError(str(mesh), None, "; ".join([message, *best[0].robot.warnings]))
     return best
 
 
@@ -406,5 +361,5 @@ def _notes(prepared: PreparedScene, arm: FoundArm, own_tool: bool) -> Iterator[s
     if np.isnan(prepared.robot.velocity).any():
         yield "setup.toml has velocities of 1 rad/s, since the URDF has none"
     if not prepared.setup.constraints.force:
-        yield "torques are not tested, since the URDF lacks masses or efforts"
+        yield "torques are not tested, since a URDF lacks masses or efforts"
     yield from survey_of(prepared).warnings + prepared.notes

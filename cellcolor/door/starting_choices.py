@@ -13,6 +13,8 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
 
 if TYPE_CHECKING:
+    import xml.etree.ElementTree as ET
+
     from cellcolor.arrays import Array, Index, Mask
     from cellcolor.frontend.arm.urdf import Urdf
     from cellcolor.frontend.parts.surface import Surface
@@ -23,6 +25,8 @@ Outside = Literal["toward", "away", "flip"]
 CoverChoice = Literal["largest", "all"]
 
 _TOWARD = np.array([-1.0, 0.0, 1.0]) / np.sqrt(2)  # the part lies before the robot: up and back
+_ALONG = 1e-3  # rad; an axis so near to another one is along it
+_AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
 _ANY_WAY = 0.2  # the mean of the unit normals of what faces every way is shorter
 _LARGER = 1.02  # times the inner side's area has a shell's outer one, if it is bent
 _ABOVE = (0.1, 0.15, 0.05, 0.2)  # m; so far over the part the arm waits, the first that is free
@@ -42,6 +46,54 @@ def last_link(parent: dict[str, str]) -> str:
         return count
 
     return max(parent, key=depth)
+
+
+def is_weightless(tool: Urdf) -> bool:
+    """Whether a link with a shape has no mass."""
+    links = {link.get("name", ""): link for link in tool.xml.findall("link")}
+    return any(links[name].find("inertial") is None for name in tool.shapes)
+
+
+def mount_line(arm: Urdf, flange: str) -> str:
+    """The setup's line that turns the tool's z axis onto the last joint's, if it is not there.
+
+    Some vendors' flanges have their x axis along that of the joint.
+    """
+    from cellcolor.frontend.parts.placement import rpy_from_rotation
+
+    x, y, z = _last_axis(arm, flange)
+    along = np.hypot(x, y) < _ALONG
+    if along and z > 0:
+        return ""
+    # Turned about the axis across both.
+    cross = np.array([[0, 0, x], [0, 0, y], [-x, -y, 0]])
+    onto = np.diag([1, -1, -1]) if along else np.eye(3) + cross + cross @ cross / (1 + z)
+    angles = [round(angle, 9) + 0.0 for angle in rpy_from_rotation(onto)]
+    return f"mount_rpy_rad = {angles}   # turns the tool's z axis onto the last joint's\n"
+
+
+def _last_axis(arm: Urdf, flange: str) -> Array:
+    """The last axis (3,) before the flange, in its frame; outward with all joints at zero."""
+    from cellcolor.frontend.parts.placement import rotation_from_rpy
+
+    joints = {joint.get("name"): joint for joint in arm.xml.findall("joint")}
+    turn, out, link = np.eye(3), np.zeros(3), flange  # of the flange, seen from a link before it
+    axis: Array | None = None
+    while link in arm.parent:
+        joint = joints[arm.joint_above[link]]
+        if axis is None and arm.joint_above[link] in arm.kinds:
+            axis = _numbers(joint.find("axis"), "xyz", "1 0 0") @ turn
+            axis /= np.linalg.norm(axis)
+        if axis is not None and abs(ahead := axis @ (out @ turn)) > _AHEAD:
+            return np.asarray(axis * np.sign(ahead))
+        xyz, rpy = (_numbers(joint.find("origin"), key, "0 0 0") for key in ("xyz", "rpy"))
+        rotation = rotation_from_rpy(*rpy)
+        turn, out, link = rotation @ turn, xyz + rotation @ out, arm.parent[link]
+    return np.array([0.0, 0.0, 1.0]) if axis is None else axis
+
+
+def _numbers(element: ET.Element | None, key: str, usual: str) -> Array:
+    return np.array((usual if element is None else element.get(key, usual)).split(), dtype=float)
 
 
 def fixed_of(arm: Urdf, flange: str, given: Mapping[str, float]) -> dict[str, float]:

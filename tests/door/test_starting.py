@@ -19,7 +19,8 @@ from shipped import ROBOTS
 
 import cellcolor
 from cellcolor.data.candidate_table import VALID
-from cellcolor.door.starting import _mount, arm_of
+from cellcolor.door.starting import arm_of
+from cellcolor.door.starting_choices import mount_line
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.urdf import parse_urdf
@@ -95,7 +96,7 @@ def test_the_tool_is_turned_onto_the_last_axis(rpy: tuple[float, float, float], 
     assert usual in text
     turned = " ".join(map(repr, rpy))
     text = text.replace(usual, f'<origin xyz="{xyz}" rpy="{turned}"/>')
-    line = _mount(parse_urdf(text, Path("arm.urdf")), "tool0")
+    line = mount_line(parse_urdf(text, Path("arm.urdf")), "tool0")
     mount = tomllib.loads(line).get("mount_rpy_rad", [0.0, 0.0, 0.0])
     tool = (Rotation.from_euler("xyz", rpy) * Rotation.from_euler("xyz", mount)).apply([0, 0, 1])
     outward = -1.0 if xyz.startswith("-") else 1.0
@@ -324,5 +325,11 @@ def test_a_tool_of_ones_own(plate: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "new" / "tool.urdf").exists()
     robot = Scene.read(made.scene).setup.robot
     assert (made.scene.parent / robot.tool_urdf).resolve() == tool
+    bare = tmp_path / "bare.urdf"
+    bare.write_text(re.sub("<inertial>.*?</inertial>", "", tool.read_text(), flags=re.DOTALL))
+    made = cellcolor.new(
+        plate, ROBOTS / "ur5.urdf", tmp_path / "bare", tool=bare, tip_link="tool_tip"
+    )
+    assert not Scene.read(made.scene).setup.constraints.force
     with pytest.raises(InputError, match="tip link"):
         cellcolor.new(plate, ROBOTS / "ur5.urdf", tmp_path / "other", tool=tool)
