@@ -342,7 +342,8 @@ def setups(
             valid &= plan.verdict.valid
             if not as_json:
                 say(f"{own}: {plan.trajectory}; judge: {plan.verdict}")
-    return Exit.done_if(found.answer.proved) if valid else Exit.INVALID
+    proved = found.answer.proved and found.answer.complete
+    return Exit.done_if(proved) if valid else Exit.INVALID
 
 
 def _places_in(file: Path) -> list[tuple[float, ...]]:

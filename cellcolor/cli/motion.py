@@ -286,13 +286,16 @@ def plan(
     say(f"wrote {count(len(written), 'file')} to {output}: look at {output / 'report.html'}")
     if set(verdict.fault_counts) - {"unplanned"}:
         return Exit.INVALID
-    return Exit.done_if(verdict.valid and planned.solution.status == "optimal")
+    whole = verdict.valid and planned.solution.status == "optimal" and planned.complete
+    return Exit.done_if(whole)
 
 
 def _unfinished(scene: Path, folder: Path, unfinished: UnfinishedPlan) -> Exit:
     """Write what there is when the time limit came, and say what is missing."""
     _warn(scene, unfinished.subject)
     complain(f"{scene}: not planned to the end: {unfinished.missing}")
+    for line in unfinished.unanswered:
+        complain(f"{scene}: {line}")
     try:
         written = unfinished.save(folder)
     except InputError as error:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from typing import Annotated, Literal, Self
 
 from pydantic import (
@@ -265,10 +266,57 @@ class Motion(Table):
         return None if isinstance(self.home_rad, str) else self.home_rad
 
 
-class Setup(FileTable):
-    """Robot, task, thresholds, continuity, sliver policy and motion, shared by scenes."""
+_NAME = re.compile(r"[A-Za-z]\w{0,31}", re.ASCII)
+_NUMBERED = ("krl", "fanuc")  # languages in which tools and work objects are numbered
 
-    NEWER = ("margins",)
+
+class Controller(Table):
+    """The arm's controller, for which ``plan`` writes programs.
+
+    The controller shows for an axis its ``signs`` times the URDF's angle, plus ``offsets_deg``;
+    for the third one less ``j23_factor`` times the second, which is 1 on FANUC's arms unless it is
+    given. Its frame is that of ``base_link``. ``tool`` and ``work_object`` are names, in KRL and on
+    FANUC's controllers numbers.
+    """
+
+    language: Literal["urscript", "rapid", "krl", "fanuc"]
+    signs: Annotated[tuple[Literal[-1, 1], ...], Field(min_length=6, max_length=6)] = (1,) * 6
+    offsets_deg: Annotated[tuple[_Degrees, ...], Field(min_length=6, max_length=6)] = (0.0,) * 6
+    j23_factor: Literal[-1, 0, 1] | None = None
+    base_link: str | None = None
+    tool: str | int | None = None
+    work_object: str | int | None = None
+
+    @model_validator(mode="after")
+    def _named_as_there(self) -> Self:
+        for key in ("tool", "work_object"):
+            given = getattr(self, key)
+            numbered = self.language in _NUMBERED
+            fits = type(given) is int and 1 <= given <= 32
+            if not numbered:
+                fits = isinstance(given, str) and _NAME.fullmatch(given) is not None
+            if given is not None and not fits:
+                what = "a number from 1 to 32" if numbered else "a name of letters and digits"
+                message = f"{key} must be {what} in {self.language}"
+                raise PydanticCustomError("no_frame", "{message}", {"message": message})
+        return self
+
+    @property
+    def frames(self) -> tuple[str | int, str | int]:
+        """The tool and the work object."""
+        usual = (1, 1) if self.language in _NUMBERED else ("cellcolor_tool", "cellcolor_part")
+        return self.tool or usual[0], self.work_object or usual[1]
+
+    @property
+    def coupling(self) -> int:
+        """``j23_factor`` as it is or would be."""
+        return int(self.language == "fanuc") if self.j23_factor is None else self.j23_factor
+
+
+class Setup(FileTable):
+    """Robot, task, thresholds, continuity, slivers, motion and controller, shared by scenes."""
+
+    NEWER = ("margins", "controller")
 
     robot: RobotFiles
     task: Task
@@ -278,3 +326,4 @@ class Setup(FileTable):
     margins: Margins = Margins()
     slivers: Slivers | None = None
     motion: Motion | None = None
+    controller: Controller | None = None

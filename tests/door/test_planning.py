@@ -16,6 +16,8 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.ways import Transfer, Ways
 
+OTHER_ARMS = {name for name in KINDS if name.endswith((".mod", ".src", ".ls"))}
+
 
 def test_a_scene_is_planned_and_judged(tmp_path: Path) -> None:
     stages: list[str] = []
@@ -32,10 +34,7 @@ def test_a_scene_is_planned_and_judged(tmp_path: Path) -> None:
     assert "judge: square: valid" in said
     # A judge that is asked anew, of the files alone, says the same.
     planned.save(tmp_path / "folder")
-    assert {file.name for file in (tmp_path / "folder").iterdir()} == set(KINDS) - {
-        "cellcolor.mod",
-        "cellcolor.src",
-    }
+    assert {file.name for file in (tmp_path / "folder").iterdir()} == set(KINDS) - OTHER_ARMS
     scene = scene.with_setup(scene.setup.varied(motion={"spacing_m": 0.05}))
     again = cellcolor.check(scene, tmp_path / "folder" / "trajectory.json")
     assert again.valid

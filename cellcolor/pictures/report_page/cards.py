@@ -21,6 +21,7 @@ def cards_of(report: MotionReport) -> tuple[Card, ...]:
     """All of them, those with nothing to tell left out."""
     cards = (
         _verdict(report),
+        _lacking(report),
         _proof(report),
         _coverage(report),
         _segments(report),
@@ -93,6 +94,11 @@ def _verdict(report: MotionReport) -> Card:
     if any(time is not None for time in times):
         texts.append("A click on a row, on its mark on the part or in the bar of time leads there.")
     return Card(title, tuple(texts), tuple(rows), False, times=times)
+
+
+def _lacking(report: MotionReport) -> Card | None:
+    """What was asked for, or is usual, and is not there."""
+    return Card("What is not there", report.lacking, (), False) if report.lacking else None
 
 
 def _coverage(report: MotionReport) -> Card | None:
