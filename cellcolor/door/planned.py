@@ -245,6 +245,7 @@ class PlannedScene(UnfinishedPlan):
             )
         covered = self.verdict.covered
         said.append(f"judge: {self.verdict}" + ("" if covered is None else f"; {covered}"))
+        said += [f"  {line}" for line in self.verdict.feed_lines]
         said += [str(answer) for answer in (self.answered.answers if self.answered else ())]
         said += self.lacking
         coverage = self.instance.coverage

@@ -70,6 +70,8 @@ spacing_m = 0.01                    # between neighboring passes
 # overlap_m = 0.01                  # of neighboring segments, so that no seam is left
 speed_m_per_s = 0.05                # of the tool on the part
 approach_speed_m_per_s = 0.02       # of the tool within 10 mm of a touch
+# transfer_speed_m_per_s = 0.25     # of the tool between strokes
+# least_feed = 0.8                  # less than this share of the speed is a fault
 $velocities
 joint_accelerations_rad_per_s2 = $accelerations   # take the data sheet's
 # joint_jerks_rad_per_s3 = $jerks   # for the judge, if there is a limit

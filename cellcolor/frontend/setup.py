@@ -241,12 +241,17 @@ class Motion(Table):
     ``approach_speed_m_per_s`` at most, without it at ``speed_m_per_s``. It retracts by
     ``retract_m`` along the normal; between segments the arm keeps ``clearance_m`` from everything.
     A URDF has velocities, which ``joint_velocities_rad_per_s`` may lower, but no accelerations.
+    ``transfer_speed_m_per_s`` caps the tip's speed between strokes. With ``even_feed`` a stroke is
+    slowed down as a whole to a feed that it can keep; ``least_feed`` is the share of
+    ``speed_m_per_s`` below which the judge finds a fault.
     ``joint_jerks_rad_per_s3`` is for judging: trajectories may not change accelerations faster.
     Planned ones are not made to keep it.
     Lists of joints go from base to tool, with m in the place of rad for prismatic ones;
     ``home_rad`` is where the arm begins and ends, nowhere in particular without it. ``"free"`` asks
     for a free position, which is found.
     """
+
+    NEWER = ("transfer_speed_m_per_s", "even_feed", "least_feed")
 
     tool_radius_m: Positive = 0.015
     spacing_m: Positive = 0.01
@@ -256,6 +261,9 @@ class Motion(Table):
     joint_accelerations_rad_per_s2: tuple[Positive, ...]
     joint_jerks_rad_per_s3: tuple[Positive, ...] | None = None
     approach_speed_m_per_s: Positive | None = None
+    transfer_speed_m_per_s: Positive | None = None
+    even_feed: bool = False
+    least_feed: Annotated[FiniteFloat, Field(gt=0, le=1)] | None = None
     retract_m: Positive = 0.05
     clearance_m: NotNegative = 0.005
     home_rad: tuple[JointAngle, ...] | Literal["free"] | None = None

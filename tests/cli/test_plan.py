@@ -114,10 +114,12 @@ def test_a_second_time_the_files_are_replaced(scene: Path, tmp_path: Path) -> No
 
 def test_keys_of_the_setup_are_replaced(scene: Path, tmp_path: Path, asked: dict[str, Any]) -> None:
     options = ["--spacing-m", "0.02", "--speed-m-per-s", "0.1", "--home-rad", "0,-1,1,-1,-1,0"]
+    options += ["--even-feed", "--least-feed", "0.5"]
     assert run("plan", scene, "-o", tmp_path / "a", "--pattern", "contour", *options) == 0
     motion = asked["motion"]
     assert (motion.spacing_m, motion.speed_m_per_s) == (0.02, 0.1)
     assert motion.home_rad == (0, -1, 1, -1, -1, 0)
+    assert (motion.even_feed, motion.least_feed) == (True, 0.5)
     assert motion.tool_radius_m == 0.015  # of the setup
     assert asked["pattern"] == "contour"
     # What the surface is does not depend on how the arm moves later.

@@ -23,6 +23,7 @@ def cards_of(report: MotionReport) -> tuple[Card, ...]:
         _verdict(report),
         _lacking(report),
         _proof(report),
+        _feed(report),
         _coverage(report),
         _segments(report),
         _reach(report),
@@ -99,6 +100,32 @@ def _verdict(report: MotionReport) -> Card:
 def _lacking(report: MotionReport) -> Card | None:
     """What was asked for, or is usual, and is not there."""
     return Card("What is not there", report.lacking, (), False) if report.lacking else None
+
+
+def _feed(report: MotionReport) -> Card | None:
+    """How steadily the tool moves along each stroke."""
+    verdict = report.verdict
+    if verdict is None or not verdict.feeds:
+        return None
+    asked, window = verdict.feeds[0].asked_m_per_s, 1e3 * verdict.feeds[0].window_m
+    text = (
+        f"Asked for: {asked:g} m/s. The lowest is over {window:g} mm, the tool's footprint, away "
+        "from the ends; slow is below 90 % of what is asked for."
+    )
+    rows = [("stroke", "mean m/s", "lowest m/s", "slow, of the time", "because of")]
+    rows += [
+        (
+            str(number),
+            f"{feed.mean_m_per_s:.3g}",
+            f"{feed.lowest_m_per_s:.3g}",
+            f"{feed.slow_share:.0%}",
+            f"{feed.limited_by} of {feed.joint}" if feed.slow_share and feed.joint else "–",
+        )
+        for number, feed in enumerate(verdict.feeds)
+    ]
+    good = None if "feed" not in verdict.fault_counts else False
+    times = tuple(feed.time for feed in verdict.feeds)
+    return Card("Feed", (text,), tuple(rows), good, times=times)
 
 
 def _coverage(report: MotionReport) -> Card | None:
