@@ -19,7 +19,7 @@ from cellcolor.door.plan_files import SIDE, SURFACE, save
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
-from cellcolor.exports.registry import PROGRAM, exported, why_not
+from cellcolor.exports.registry import PROGRAM, exported, programs_of, why_not
 from cellcolor.files.paths import path_of
 from cellcolor.painting.paint import Painted
 
@@ -185,6 +185,7 @@ class PlannedScene(UnfinishedPlan):
             verdict=self.verdict,
             paths=None,
             answered=self.answered,
+            programs=programs_of(self._motion()),
             lacking=self.lacking,
         )
 
@@ -208,6 +209,7 @@ class PlannedScene(UnfinishedPlan):
         painted, trajectory = self.painted, self.trajectory
         fills = segment_fills(painted)
         prepared = self.built.prepared
+        task = prepared.setup.task
         return PlannedMotion(
             surface=painted.surface,
             segment_of=painted.segment_of,
@@ -216,7 +218,8 @@ class PlannedScene(UnfinishedPlan):
             trajectory=trajectory,
             axes=axes_of(prepared),
             step_s=export_step_s,
-            force_n=prepared.setup.task.normal_force_n,
+            # A tool that stands off presses on nothing.
+            force_n=0.0 if task.stand_off_m else task.normal_force_n,
             controller=prepared.setup.controller,
             part=prepared.scene.placement.matrix,
         )

@@ -77,15 +77,27 @@ class ArmAxes:
             bool(robot.slides.any()),
         )
 
+    def moved(self, joints: Array) -> list[tuple[Rotation, Array]]:
+        """How what is behind each joint has turned (k,) and moved (k, 3), m, since all were zero.
+
+        Args:
+            joints: (k, joints) rad; of an arm that turns.
+        """
+        turn, shift = Rotation.identity(len(joints)), np.zeros((len(joints), 3))
+        found = []
+        for point, direction, angles in zip(self.points, self.directions, joints.T, strict=True):
+            own = turn * Rotation.from_rotvec(angles[:, None] * direction)
+            shift = turn.apply(point) + shift - own.apply(point)
+            turn = own
+            found.append((turn, shift))
+        return found
+
     def tips(self, joints: Array) -> Array:
         """(k, 4, 4) poses of the tool's tip with the joints (k, joints) of an arm that turns."""
+        turn, shift = self.moved(joints)[-1]
         found = np.tile(self.tip, (len(joints), 1, 1))
-        for point, direction, angles in reversed(
-            list(zip(self.points, self.directions, joints.T, strict=True))
-        ):
-            turn = Rotation.from_rotvec(angles[:, None] * direction).as_matrix()
-            found[:, :3] = turn @ found[:, :3]
-            found[:, :3, 3] += point - turn @ point
+        found[:, :3] = turn.as_matrix() @ self.tip[:3]
+        found[:, :3, 3] += shift
         return found
 
 

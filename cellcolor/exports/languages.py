@@ -73,10 +73,16 @@ class Move:
     share: float
 
 
-class Language:
-    """A language of controllers; what it has gives lines of a program.
+class _Common:
+    """What languages share. Each has besides, as lines of a program:
+
+    ``head`` and ``tail``, all before the first stretch and after the last one; ``begin``, the
+    beginning of a stretch, which stops unless the arm stands there; ``joint``, a move of all joints
+    in proportion; ``linear``, one of the tip along a straight line.
 
     Attributes:
+        suffix: of files.
+        mark: what such a file begins with.
         comment: what a remark begins with.
         call: of the routine of a stretch.
         end, release: the ends of a stretch, and of pressing along the tool's axis.
@@ -84,12 +90,18 @@ class Language:
     """
 
     suffix: str
-    kind: FileKind
+    mark: str
     comment: str
     call: str = ""
     end: tuple[str, ...] = ()
     release: tuple[str, ...] = ()
     stepped = False
+
+    @property
+    def kind(self) -> FileKind:
+        """Of its files."""
+        name = f"a program {self.suffix} written by cellcolor"
+        return FileKind(name, re.compile(self.mark.encode()))
 
     def remark(self, text: str) -> str:
         """A comment."""
@@ -102,40 +114,18 @@ class Language:
             more = f"{call}  not planned up to there: bring the arm there by hand"
             yield f"  {call}" if number == 1 else self.remark(more)
 
-    def head(self, job: Job) -> Iterable[str]:
-        """Everything before the first stretch."""
-        raise NotImplementedError
-
-    def begin(self, number: int, start: Move) -> Iterable[str]:
-        """The beginning of a stretch, which stops unless the arm stands at ``start``."""
-        raise NotImplementedError
-
-    def joint(self, job: Job, move: Move) -> str:
-        """A move of all joints in proportion."""
-        raise NotImplementedError
-
-    def linear(self, job: Job, move: Move) -> str:
-        """A move of the tip along a straight line."""
-        raise NotImplementedError
-
     def press(self, job: Job) -> Iterable[str]:  # noqa: ARG002
         """Press from here on along the tool's axis as it is now."""
         return ()
 
-    def tail(self, job: Job) -> Iterable[str]:
-        """Everything after the last stretch."""
-        raise NotImplementedError
 
-
-class UrScript(Language):
+class UrScript(_Common):
     """``servoj`` along straight ways in joints, ``movep`` along lines; m and rad."""
 
     suffix, comment, call, stepped = ".script", "#", "stretch_{}()", True
     end = ("  stopj(2.0)", "  end")
     release = ("  if pressing:", "    end_force_mode()", "  end")
-    kind = FileKind(
-        "a program in URScript written by cellcolor", re.compile(rb"# cellcolor: URScript")
-    )
+    mark = "# cellcolor: URScript"
 
     def head(self, job: Job) -> Iterable[str]:
         share = ", ".join(f"at[{i}] + s * (to[{i}] - at[{i}])" for i in range(6))
@@ -185,14 +175,11 @@ class UrScript(Language):
         return (*self.calls(job), "end")
 
 
-class Rapid(Language):
+class Rapid(_Common):
     """``MoveAbsJ`` with its duration, ``MoveL`` at the feed; degrees and mm."""
 
     suffix, comment, call, end = ".mod", "!", "stretch_{};", ("  ENDPROC",)
-    kind = FileKind(
-        "a program in RAPID written by cellcolor",
-        re.compile(rb"MODULE cellcolor\w*\n +! cellcolor: "),
-    )
+    mark = r"MODULE cellcolor\w*\n +! cellcolor: "
     _external = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 
     def head(self, job: Job) -> Iterable[str]:
@@ -238,13 +225,11 @@ class Rapid(Language):
 
 
 @dataclass(eq=False)
-class Krl(Language):
+class Krl(_Common):
     """``PTP`` at a share of the axes' speeds, ``LIN`` at the feed; degrees and mm."""
 
     suffix, comment, call, end = ".src", ";", "stretch_{}( )", ("END",)
-    kind = FileKind(
-        "a program in KRL written by cellcolor", re.compile(rb"&ACCESS RVP\n&COMMENT cellcolor: ")
-    )
+    mark = r"&ACCESS RVP\n&COMMENT cellcolor: "
     _speeds: dict[str, str] = field(default_factory=dict)
 
     def _at(self, speed: str, move: str) -> str:
@@ -295,16 +280,14 @@ class Krl(Language):
 
 
 @dataclass(eq=False)
-class Fanuc(Language):
+class Fanuc(_Common):
     """``J`` with its duration and ``L`` at the feed, to joint positions in degrees; mm.
 
     A program of its own has all stretches, and pauses between them.
     """
 
     suffix, comment = ".ls", "!"
-    kind = FileKind(
-        "a program for FANUC written by cellcolor", re.compile(rb"/PROG  CELLCOLOR\w*\n")
-    )
+    mark = r"/PROG  CELLCOLOR\w*\n"
     _places: list[Array] = field(default_factory=list)
 
     def head(self, job: Job) -> Iterable[str]:
@@ -359,6 +342,7 @@ class Fanuc(Language):
         yield "/END"
 
 
+Language = UrScript | Rapid | Krl | Fanuc
 LANGUAGES: dict[str, Language] = {
     "urscript": UrScript(),
     "rapid": Rapid(),

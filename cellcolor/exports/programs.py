@@ -7,7 +7,8 @@ the motion begins, and ends where a move was not planned.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
@@ -38,21 +39,20 @@ def programs() -> dict[str, Export]:
     for name, language in LANGUAGES.items():
         for linear, stem in ((False, "cellcolor"), (True, "cellcolor_linear")):
             found[stem + language.suffix] = Export(
-                language.kind, _content(language, linear), _check(name)
+                language.kind,
+                partial(_program, language=language, linear=linear),
+                partial(_check, name=name),
             )
     return found
 
 
-def _content(language: Language, linear: bool) -> Callable[[PlannedMotion], bytes]:
-    return lambda planned: "\n".join([*_lines(planned, language, linear), ""]).encode("ascii")
+def _check(planned: PlannedMotion, name: str) -> None:
+    if controller_of(planned).language != name:
+        raise NotForThisArm(f"its controller does not speak {name}")
 
 
-def _check(name: str) -> Callable[[PlannedMotion], None]:
-    def check(planned: PlannedMotion) -> None:
-        if controller_of(planned).language != name:
-            raise NotForThisArm("")
-
-    return check
+def _program(planned: PlannedMotion, language: Language, linear: bool) -> bytes:
+    return "\n".join([*_lines(planned, language, linear), ""]).encode("ascii")
 
 
 def controller_of(planned: PlannedMotion) -> Controller:

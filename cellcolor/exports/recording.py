@@ -206,16 +206,8 @@ def _cdr(*fields: Field) -> bytes:
 
 def _frames(axes: ArmAxes, joints: Array) -> list[tuple[Array, Array]]:
     """Where each axis is (k, 3) and how its link is turned (k, 4), for joints (k, n)."""
-    from scipy.spatial.transform import Rotation
-
-    turn, shift = Rotation.identity(len(joints)), np.zeros((len(joints), 3))
-    found = []
-    for point, direction, angles in zip(axes.points, axes.directions, joints.T, strict=True):
-        own = turn * Rotation.from_rotvec(angles[:, None] * direction)
-        shift = turn.apply(point) + shift - own.apply(point)
-        turn = own
-        found.append((turn.apply(point) + shift, turn.as_quat()))
-    return found
+    moved = zip(axes.points, axes.moved(joints), strict=True)
+    return [(turn.apply(point) + shift, turn.as_quat()) for point, (turn, shift) in moved]
 
 
 def _markers(planned: PlannedMotion) -> list[Field]:

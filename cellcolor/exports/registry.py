@@ -14,6 +14,7 @@ from cellcolor.exports import (
     tool_poses,
 )
 from cellcolor.exports.interface import Export, NotForThisArm, PlannedMotion
+from cellcolor.exports.languages import LANGUAGES
 
 PROGRAM = "program for a controller"
 EXPORTS = {
@@ -37,6 +38,16 @@ def exported(planned: PlannedMotion) -> dict[str, bytes]:
             export.check(planned)
             found[name] = export.content(planned)
     return found
+
+
+def programs_of(planned: PlannedMotion) -> tuple[str, ...]:
+    """The names of the programs for the arm's controller, none if there is none."""
+    try:
+        language = programs.controller_of(planned).language
+    except NotForThisArm:
+        return ()
+    suffix = LANGUAGES[language].suffix
+    return tuple(name for name in programs.programs() if name.endswith(suffix))
 
 
 def why_not(planned: PlannedMotion) -> dict[str, str]:

@@ -98,6 +98,9 @@ def test_all_files_are_there_and_belong_together(
     assert "2 segments, 1 lift-off, optimal" in said.out
     assert f"wrote {len(list(folder.iterdir()))} files to {folder}" in said.out
     assert "report.html" in said.out
+    page = (folder / "report.html").read_text("utf-8")
+    assert "cellcolor.script and cellcolor_linear.script: joint moves" in page
+    assert "No parser of the maker" in page
     assert "warning: the object's edges are up to" in said.err  # what `build` warns of
 
 

@@ -29,6 +29,7 @@ def cards_of(report: MotionReport) -> tuple[Card, ...]:
         _reach(report),
         _extra(report),
         _left_out(report),
+        _programs(report),
     )
     answers = () if report.answered is None else report.answered.answers
     return (*(card for card in cards if card is not None), *map(answer_card, answers))
@@ -283,6 +284,18 @@ def _extra(report: MotionReport) -> Card | None:
             for extra in trajectory.extra_lift_offs
         ]
     return Card("Beyond the minimum", tuple(texts), tuple(rows), False)
+
+
+def _programs(report: MotionReport) -> Card | None:
+    """What is known of the programs for the arm's controller."""
+    if not report.programs:
+        return None
+    text = (
+        f"{listed(report.programs)}: joint moves as they were judged, and linear moves at the "
+        "feed, which were not judged. No parser of the maker, nor any other foreign one, has read "
+        "them: run them in simulation first."
+    )
+    return Card("Programs for the controller", (text,))
 
 
 def _left_out(report: MotionReport) -> Card | None:
