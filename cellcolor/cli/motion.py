@@ -44,10 +44,14 @@ _FAULTS = 5  # that plan prints
 _PATTERN = click.option(
     "--pattern",
     metavar="NAME",
-    callback=one_of(pattern_names),
+    callback=lambda context, option, value: (
+        one_of(pattern_names)(context, option, value.partition(":")[0]) and value
+    ),
     default=DEFAULT_PATTERN,
     show_default=True,
-    help=f"Pattern of the tool paths: {', '.join(PATTERNS)}, or what another package registers.",
+    help=f"Pattern of the tool paths: {', '.join(PATTERNS)}, or what another package registers. "
+    "Rows of back-and-forth run back-and-forth:X,Y,Z along a vector, back-and-forth:around:X,Y,Z "
+    "around an axis, or back-and-forth:fewest-turns.",
 )
 
 

@@ -161,6 +161,7 @@ def test_without_a_table_the_needed_key_is_named(
         (["--home-rad", "0,1"], "motion.home_rad"),
         (["--home-rad", "0,1,x,0,0,0"], "--home-rad"),
         (["--pattern", "zigzag"], "pattern"),
+        (["--pattern", "back-and-forth:x"], "pattern"),
         (["--time-limit", "-1"], "--time-limit"),
     ],
 )
