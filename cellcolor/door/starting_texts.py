@@ -79,6 +79,11 @@ retract_m = 0.05                    # along the normal, before moving on
 clearance_m = 0.005                 # to everything, between strokes
 # Where the arm begins and ends; free in this scene.
 $home
+
+# For programs (docs/formats/other-programs.md); an arm of Universal Robots needs no table.
+# [controller]
+# language = "rapid"                # urscript, rapid, krl or fanuc
+# signs = [1, 1, 1, 1, 1, 1]        # of its axes against the URDF's; there are offsets_deg too
 """
 )
 
