@@ -240,6 +240,7 @@ _MOTION = {
     "spacing_m": "Between neighboring passes, m.",
     "overlap_m": "Of neighboring segments, m; none without.",
     "speed_m_per_s": "Of the tool on the surface, m/s; slower where joints limit it.",
+    "lead_m": "Straight on before and after each stroke, of a tool that stands off, m.",
     "approach_speed_m_per_s": "Of the tool within 10 mm of contact, m/s; as in contact without.",
     "transfer_speed_m_per_s": "Of the tool between strokes at most, m/s.",
     "even_feed": "Slow each stroke down as a whole to a feed that it can keep.",

@@ -221,6 +221,7 @@ class PlannedScene(UnfinishedPlan):
             # A tool that stands off presses on nothing.
             force_n=0.0 if task.stand_off_m else task.normal_force_n,
             controller=prepared.setup.controller,
+            led=bool(prepared.setup.motion and prepared.setup.motion.lead_m),
             part=prepared.scene.placement.matrix,
         )
 

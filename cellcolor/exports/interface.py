@@ -115,6 +115,7 @@ class PlannedMotion:
         step_s: fixed time step of the exported samples, s; None keeps those of the trajectory.
         force_n: the force along the tool's axis that the setup asks for, N.
         controller: what the setup says of the arm's controller; None if it names none.
+        led: whether the arm does not rest where strokes begin and end.
         part: (4, 4) pose of the part in the world, the work object of programs.
     """
 
@@ -127,6 +128,7 @@ class PlannedMotion:
     step_s: float | None = None
     force_n: float = 0.0
     controller: Controller | None = None
+    led: bool = False
     part: Array = field(default_factory=lambda: np.eye(4))
 
     @property

@@ -186,6 +186,8 @@ def _moves(
                range(int(stroke[-1]) + 1)]  # fmt: skip
     pressing = set(presses.tolist())
     resting = {n for n in (*edges.tolist(), *(edges + 1).tolist()) if own.contact[n]}
+    if planned.led and not linear:
+        resting = set()
     before = 0
     for place, row in enumerate(rows.tolist()):
         after = int(rows[min(place + 1, len(rows) - 1)])

@@ -241,6 +241,7 @@ class Motion(Table):
     ``approach_speed_m_per_s`` at most, without it at ``speed_m_per_s``. It retracts by
     ``retract_m`` along the normal; between segments the arm keeps ``clearance_m`` from everything.
     A URDF has velocities, which ``joint_velocities_rad_per_s`` may lower, but no accelerations.
+    A tool that stands off goes straight on by ``lead_m`` before and after each stroke.
     ``transfer_speed_m_per_s`` caps the tip's speed between strokes. With ``even_feed`` a stroke is
     slowed down as a whole to a feed that it can keep; ``least_feed`` is the share of
     ``speed_m_per_s`` below which the judge finds a fault.
@@ -251,7 +252,7 @@ class Motion(Table):
     for a free position, which is found.
     """
 
-    NEWER = ("transfer_speed_m_per_s", "even_feed", "least_feed")
+    NEWER = ("lead_m", "transfer_speed_m_per_s", "even_feed", "least_feed")
 
     tool_radius_m: Positive = 0.015
     spacing_m: Positive = 0.01
@@ -260,6 +261,7 @@ class Motion(Table):
     joint_velocities_rad_per_s: tuple[Positive, ...] | None = None
     joint_accelerations_rad_per_s2: tuple[Positive, ...]
     joint_jerks_rad_per_s3: tuple[Positive, ...] | None = None
+    lead_m: NotNegative = 0.0
     approach_speed_m_per_s: Positive | None = None
     transfer_speed_m_per_s: Positive | None = None
     even_feed: bool = False

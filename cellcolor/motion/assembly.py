@@ -85,16 +85,12 @@ def assembled(
             why = partings[stroke.segment].pop(0)
             last = last_of[stroke.segment]
             extra.append(ExtraLiftOff(last, stroke.segment, why.reason, why.text, why.place))
-        how = (stroke.joints, speeds, stroke.points, motion.speed_m_per_s)
-        window = 2 * motion.tool_radius_m
-        times = rows.now + (evenly_timed(*how, window) if motion.even_feed else timed(*how))
+        begun = _add_stroke(rows, robot, stroke, motion, speeds)
         repeated += [
-            RepeatedStretch(rows.count + a, rows.count + b, "beside another pass")
+            RepeatedStretch(begun + a, begun + b, "beside another pass")
             for a, b in stretches(marked[number])
         ]
-        rows.add(times, stroke.joints, stroke.points, stroke.normals, stroke.segment)
-        rows.now = float(times[-1])
-        last_of[stroke.segment] = rows.count - 1
+        last_of[stroke.segment] = begun + len(stroke) - 1
     times, joints, points, normals, segment = map(np.concatenate, zip(*rows.parts, strict=True))
     return Trajectory(
         name="",
@@ -110,6 +106,24 @@ def assembled(
         repeated=tuple(repeated),
         meta={"blocked": list(unplanned.values())} if unplanned else {},
     )
+
+
+def _add_stroke(rows: _Rows, robot: Robot, stroke: Stroke, motion: Motion, speeds: Speeds) -> int:
+    """Add a stroke with its leads, as one motion; the number of its first sample in contact."""
+    joints, poses = stroke.whole, forward(robot, stroke.whole)
+    first = len(stroke.leads[0]) if stroke.leads else 0
+    own = slice(first, first + len(stroke))
+    points, normals = poses.tip, -poses.tool_axis
+    points[own], normals[own] = stroke.points, stroke.normals
+    how = joints, speeds, points, motion.speed_m_per_s
+    times = evenly_timed(*how, 2 * motion.tool_radius_m) if motion.even_feed else timed(*how)
+    times = times + rows.now
+    begun = rows.count + first
+    parts = ((slice(first), -1), (own, stroke.segment), (slice(own.stop, None), -1))
+    for part, segment in parts:
+        rows.add(times[part], joints[part], points[part], normals[part], segment)
+    rows.now = float(times[-1])
+    return begun
 
 
 def _retraced(strokes: Sequence[Stroke], spacing: float) -> dict[int, Mask]:

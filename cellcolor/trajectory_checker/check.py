@@ -86,7 +86,8 @@ def check_trajectory(
         fine = replace(fine, away=OFF_SURFACE)
     contact = contact_of(prepared, trajectory, dense, fine, deadline)
     touching = judge_contact(contact, direction, faults)
-    judge_dragged(dense, fine, deadline, faults)
+    if not prepared.setup.task.stand_off_m:  # else nothing is touched
+        judge_dragged(dense, fine, deadline, faults)
     if prepared.setup.task.turn is not None:
         judge_turn(prepared.setup.task.turn, contact, direction, faults)
     judge_cracks(built, contact, fine, faults)
@@ -177,7 +178,8 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
         notes.append("The setup has no [motion], so accelerations are not judged.")
     if motion is not None:
         tool_speed = motion.speed_m_per_s
-        touch_speed = motion.approach_speed_m_per_s or np.inf
+        if not setup.task.stand_off_m:
+            touch_speed = motion.approach_speed_m_per_s or np.inf
         for key in ("velocities_rad_per_s", "accelerations_rad_per_s2", "jerks_rad_per_s3"):
             given = getattr(motion, f"joint_{key}")
             if given is not None and len(given) != robot.joints:
