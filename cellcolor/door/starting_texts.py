@@ -70,6 +70,8 @@ spacing_m = 0.01                    # between neighboring passes
 # overlap_m = 0.01                  # of neighboring segments, so that no seam is left
 speed_m_per_s = 0.05                # of the tool on the part
 approach_speed_m_per_s = 0.02       # of the tool within 10 mm of a touch
+# transfer_speed_m_per_s = 0.25     # of the tool between strokes
+# least_feed = 0.8                  # less than this share of the speed is a fault
 $velocities
 joint_accelerations_rad_per_s2 = $accelerations   # take the data sheet's
 # joint_jerks_rad_per_s3 = $jerks   # for the judge, if there is a limit
@@ -77,6 +79,11 @@ retract_m = 0.05                    # along the normal, before moving on
 clearance_m = 0.005                 # to everything, between strokes
 # Where the arm begins and ends; free in this scene, over the part if there is room.
 $home
+
+# For programs (docs/formats/other-programs.md); an arm of Universal Robots needs no table.
+# [controller]
+# language = "rapid"                # urscript, rapid, krl or fanuc
+# signs = [1, 1, 1, 1, 1, 1]        # of its axes against the URDF's; there are offsets_deg too
 """
 )
 
