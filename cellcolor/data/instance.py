@@ -15,14 +15,14 @@ from cellcolor.data.cells_and_edges import (
     OUTSIDE,
     Cell,
     Edge,
-    check_color_names,
     check_graph,
+    faults_of_color_names,
     shared_colors,
 )
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.value import Document, Value, given_members
+from cellcolor.data.value import Document, Value, members_of
 from cellcolor.data.wording import count
-from cellcolor.errors import InputError
+from cellcolor.errors import refuse
 from cellcolor.files.documents import dump_lines, sha256_of
 from cellcolor.files.validation import json_content, settle
 
@@ -81,6 +81,8 @@ class Instance(Document):
 
     FORMAT = "cellcolor/instance"
     ADDED = (("coverage", "surface.sha256"),)
+    LINES = ("cells", "edges")
+    LAST = ("known",)
 
     name: str
     colors: tuple[str, ...]
@@ -97,14 +99,13 @@ class Instance(Document):
         settle(self)
         if self.meta is not None:
             object.__setattr__(self, "meta", json_content(self.meta, "meta"))
-        check_color_names(self.colors)
+        refuse(faults_of_color_names(self.colors))
         check_graph(self.cells, self.edges, len(self.colors))
-        if self.surface is not None:
-            for vertex, cell in enumerate(self.surface.vertex_cell):
-                if not OUTSIDE <= cell < len(self.cells):
-                    raise InputError(
-                        None, f"surface.vertex_cell[{vertex}]", f"no cell {cell} in this instance"
-                    )
+        refuse(
+            (f"surface.vertex_cell[{vertex}]", f"no cell {cell} in this instance")
+            for vertex, cell in enumerate(() if self.surface is None else self.surface.vertex_cell)
+            if not OUTSIDE <= cell < len(self.cells)
+        )
 
     @property
     def size(self) -> str:
@@ -208,27 +209,6 @@ class Instance(Document):
 
         return cellcolor.show(self, path, **view)
 
-    def to_json(self) -> str:
-        """The file's text, as ``build`` writes it."""
-        document = {"format": self.FORMAT, "version": 2} | self._body()
-        return dump_lines(document, frozenset({"cells", "edges"}))
-
-    def _body(self) -> dict[str, Any]:
-        """The JSON object without its format and version."""
-        document: dict[str, Any] = {"name": self.name, "colors": self.colors}
-        document["cells"] = [given_members(cell) for cell in self.cells]
-        document["edges"] = [given_members(edge) for edge in self.edges]
-        if self.meta is not None:
-            document["meta"] = self.meta
-        if self.surface is not None:
-            document["surface"] = given_members(self.surface)
-        if self.coverage is not None:
-            document["coverage"] = self.coverage.to_document()
-        if self.known is not None:
-            results = given_members(self.known)
-            document["known"] = {space: given_members(known) for space, known in results.items()}
-        return document
-
     @cached_property
     def sha256(self) -> str:
         """Fingerprint of what a solver reads (docs/formats.md): the graph, no names, no sizes.
@@ -257,7 +237,7 @@ class Instance(Document):
     @property
     def sha256_of_version_1(self) -> str:
         """Fingerprint of this instance in a solution of version 1: that of the whole file."""
-        return self._of_version_1 or _fingerprint_of_version_1(self._body())
+        return self._of_version_1 or _fingerprint_of_version_1(members_of(self))
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Instance:

@@ -153,9 +153,9 @@ def cover(
 
 def _unit_rows(normals: Any, count: int) -> Array:
     """Normals of length 1."""
-    from cellcolor.data.value import rows_of_three
+    from cellcolor.data.value import THREES
 
-    rows = rows_of_three(normals, "normals")
+    rows = THREES.of(normals, "normals")
     if len(rows) != count:
         raise InputError(None, "normals", f"has {len(rows)} entries for {count} vertices")
     lengths = np.linalg.norm(rows, axis=1)
