@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from cellcolor.cli.ending import INTERRUPTS, Exit
-from cellcolor.cli.options import PATH, TIME_LIMIT, cellcolor, output_option
+from cellcolor.cli.options import METRES, PATH, cellcolor, option, output_option, shared
 from cellcolor.cli.progress import at_work
 from cellcolor.cli.terminal import apart_from, say, say_lines
 from cellcolor.deadline import Deadline
@@ -17,17 +17,10 @@ from cellcolor.files.writing import Output, check_output, kind_of_format, write
 @cellcolor.command()
 @click.argument("source", metavar="JOINTS.(npz|json|csv)", type=PATH)
 @output_option("SURFACE.json", "The labelled surface.", required=True)
-@click.option(
-    "--mesh", metavar="MESH.(obj|ply|stl)", type=PATH, help="The mesh of a CSV file, in m."
-)
+@option("--mesh", PATH, "The mesh of a CSV file, in m.", metavar="MESH.(obj|ply|stl)")
 @click.option("--cut", is_flag=True, help="Cut colors that have two solutions of a vertex.")
-@click.option(
-    "--reach",
-    metavar="METRES",
-    type=click.FloatRange(min=0, min_open=True),
-    help="The arm's reach; a part far larger is refused.",
-)
-@TIME_LIMIT
+@option("--reach", METRES, "The arm's reach; a part far larger is refused.")
+@shared("time_limit")
 def label(
     source: Path,
     output: Path,

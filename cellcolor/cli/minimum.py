@@ -12,19 +12,16 @@ import click
 
 from cellcolor.cli.ending import INTERRUPTS, Exit
 from cellcolor.cli.options import (
-    COVER,
     INPUT,
-    LEFT_ALONE,
     PATH,
-    REQUIRED,
     SECONDS,
-    SEED,
-    TOLERANCE,
-    WORKERS,
+    Count,
     cellcolor,
     json_option,
     one_of,
+    option,
     output_option,
+    shared,
 )
 from cellcolor.cli.terminal import apart_from, complain, say, say_lines
 from cellcolor.data.wording import count
@@ -118,55 +115,40 @@ def _build_surface(source: Path, output: Path) -> Instance:
 @cellcolor.command()
 @click.argument("files", metavar="FILE…", nargs=-1, required=True, type=INPUT)
 @output_option("OUT", "A file for one input, a folder for several.")
-@click.option(
+@option(
     "--solver",
+    None,
+    f"{', '.join(OWN_NAMES)}, or what another package registers. {PAPERS} is the paper's "
+    f"depth-first search, for small instances, and {REFERENCE} the same search with a bound.",
+    default=DEFAULT,
     metavar="NAME",
     callback=one_of(solver_names),
-    default=DEFAULT,
-    show_default=True,
-    help=f"{', '.join(OWN_NAMES)}, or what another package registers. {PAPERS} is the paper's "
-    f"depth-first search, for small instances, and {REFERENCE} the same search with a bound.",
 )
-@click.option(
-    "--search-space",
-    type=click.Choice(["paper", "surface"]),
-    default="paper",
-    show_default=True,
-    help="paper: no more than one corridor across an edge. surface: several.",
-)
-@click.option(
+@shared("search_space")
+@option(
     "--strands",
+    Count(1),
+    "Corridors that may cross an edge, in search space surface.  [default: 2]",
     metavar="K",
-    type=click.IntRange(min=1),
-    help="Corridors that may cross an edge, in search space surface.  [default: 2]",
 )
-@COVER
-@REQUIRED
-@LEFT_ALONE
-@TOLERANCE
+@shared("cover", "required", "left_alone", "tolerance")
 @click.option("--all", "every", is_flag=True, help="List all optimal schemes.")
-@click.option(
+@option(
     "--warm-start",
-    "start",
+    PATH,
+    "Start from this solution of the one file given.",
+    to="start",
     metavar="SOLUTION.json",
-    type=PATH,
-    help="Start from this solution of the one file given.",
 )
-@click.option(
-    "--limit",
-    metavar="N",
-    type=click.IntRange(min=1),
-    help="With --all, stop after this many schemes.  [default: 1000]",
-)
-@click.option(
+@option("--limit", Count(1), "With --all, stop after this many schemes.  [default: 1000]")
+@option(
     "--picture",
+    PATH,
+    "Best division and bounds over the seconds of the search.",
     metavar="OUT.(png|svg)",
-    type=PATH,
-    help="Best division and bounds over the seconds of the search.",
 )
-@click.option("--time-limit", metavar="S", type=SECONDS, help="Seconds for each file.")
-@WORKERS
-@SEED
+@option("--time-limit", SECONDS, "Seconds for each file.")
+@shared("workers", "seed")
 @json_option("Print JSON Lines, one solution per file.")
 def solve(
     files: tuple[Path, ...], every: bool, limit: int | None, picture: Path | None, **given: Any
@@ -216,31 +198,28 @@ def solve(
 @cellcolor.command()
 @click.argument("subject", metavar="FILE", type=click.Path())
 @click.argument("claim", metavar="SOLUTION.json|PLAN.json|TRAJECTORY", type=click.Path())
-@click.option(
+@option(
     "--time-limit",
-    "seconds",
-    metavar="S",
-    type=SECONDS,
+    SECONDS,
+    "Seconds, including reading, for a trajectory, or for the proven range that a plan is compared "
+    "with.",
+    to="seconds",
     default=60.0,
-    show_default=True,
-    help="Seconds, including reading, for a trajectory, or for the proven range that a plan is "
-    "compared with.",
 )
-@LEFT_ALONE
-@TOLERANCE
-@click.option(
+@shared("left_alone", "tolerance")
+@option(
     "--cache",
+    PATH,
+    "For a plan: keep the proven range there, so that the next plan on the same surface needs no "
+    "proof.",
     metavar="FOLDER",
-    type=PATH,
-    help="For a plan: keep the proven range there, so that the next plan on the same surface needs "
-    "no proof.",
 )
-@click.option(
+@option(
     "--better",
-    metavar="OUT.surface.json",
-    type=PATH,
-    help="For a plan that can be beaten: write a better painting, and beside it the plan as "
+    PATH,
+    "For a plan that can be beaten: write a better painting, and beside it the plan as "
     "OUT.plan.json.",
+    metavar="OUT.surface.json",
 )
 @click.option(
     "--require-optimal",
@@ -274,26 +253,21 @@ def check(seconds: float, **given: Any) -> Exit:
     type=INPUT,
 )
 @output_option("OUT.(html|png|svg)", "The picture; the ending gives its format.", required=True)
-@click.option(
+@option(
     "--view",
+    click.Choice(list(PICTURES)),
+    f"The picture: {', '.join(PICTURES)}. The options below also choose one.",
     metavar="NAME",
-    type=click.Choice(list(PICTURES)),
-    help=f"The picture: {', '.join(PICTURES)}. The options below also choose one.",
 )
-@click.option("--color", metavar="NAME|ID", help="Show where one color is available.")
+@option("--color", None, "Show where one color is available.", metavar="NAME|ID")
 @click.option(
     "--reason",
     is_flag=True,
     help="Show why points are out of reach, in the best branch or in one --branch.",
 )
 @click.option("--graph", is_flag=True, help="The topological graph.")
-@click.option(
-    "--vertex",
-    metavar="N",
-    type=click.IntRange(min=0),
-    help="Show the arm at a vertex, in a --branch.",
-)
-@click.option("--branch", metavar="NAME|ID", help="An inverse-kinematic branch.")
+@option("--vertex", Count(0), "Show the arm at a vertex, in a --branch.")
+@option("--branch", None, "An inverse-kinematic branch.", metavar="NAME|ID")
 def show(
     files: tuple[Path, ...], output: Path, view: str | None, reason: bool, graph: bool, **of: Any
 ) -> Exit:

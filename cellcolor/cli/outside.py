@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from cellcolor.cli.ending import Exit
-from cellcolor.cli.options import INPUT, PATH, cellcolor, json_option, output_option
+from cellcolor.cli.options import INPUT, PATH, cellcolor, json_option, option, output_option
 from cellcolor.cli.terminal import apart_from, print_json, say
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError, naming
@@ -27,13 +27,13 @@ _FORMATS = ("pbtxt", "pb", *_ANSWERED)
 @cellcolor.command()
 @click.argument("source", metavar="FILE", type=INPUT)
 @output_option("OUT", "The model's file.", required=True)
-@click.option(
+@option(
     "--format",
-    "kind",
-    type=click.Choice(_FORMATS),
-    help="pbtxt, pb: the complete model for CP-SAT. opb: pseudo-Boolean. wcnf: MaxSAT. "
-    "mps: mixed-integer programs. dzn: data for MiniZinc. "
-    "lp: facts for answer set programs.  [default: from the ending of OUT]",
+    click.Choice(_FORMATS),
+    "pbtxt, pb: the complete model for CP-SAT. opb: pseudo-Boolean. wcnf: MaxSAT. mps: "
+    "mixed-integer programs. dzn: data for MiniZinc. lp: facts for answer set programs.  [default: "
+    "from the ending of OUT]",
+    to="kind",
 )
 def export(source: Path, output: Path, kind: str | None) -> Exit:
     """Write an instance for a solver from outside, in the search space paper.
@@ -64,13 +64,13 @@ def export(source: Path, output: Path, kind: str | None) -> Exit:
 @cellcolor.command()
 @click.argument("source", metavar="FILE", type=INPUT)
 @click.argument("given", metavar="ANSWER", type=PATH)
-@click.option(
+@option(
     "--format",
-    "kind",
-    type=click.Choice(_ANSWERED),
+    click.Choice(_ANSWERED),
+    "The format that the solver was given: opb and wcnf for lines v, mps for a file of names and "
+    "values, dzn for what coloring.mzn prints, lp for what clingo prints.",
+    to="kind",
     required=True,
-    help="The format that the solver was given: opb and wcnf for lines v, mps for a file of names "
-    "and values, dzn for what coloring.mzn prints, lp for what clingo prints.",
 )
 @output_option("SOLUTION.json", "The solution.", required=True)
 def answer(source: Path, given: Path, kind: str, output: Path) -> Exit:
@@ -121,12 +121,13 @@ def _checked(instance: Instance, found: OutsideAnswer, kind: str) -> Solution:
 @cellcolor.command(name="import")
 @click.argument("source", metavar="PROBLEM.txt", type=PATH)
 @output_option("INSTANCE.json", "The instance.", required=True)
-@click.option(
+@option(
     "--correct",
-    "corrections",
+    None,
+    "Correct cells beside an edge if the file has them wrong, -1 for the outside.",
+    to="corrections",
     metavar="EDGE=A,B",
     multiple=True,
-    help="Correct cells beside an edge if the file has them wrong, -1 for the outside.",
 )
 def import_(source: Path, output: Path, corrections: tuple[str, ...]) -> Exit:
     """Make an instance of a graph in the text format of IMCGS, the paper's authors' solver.
@@ -150,7 +151,7 @@ def import_(source: Path, output: Path, corrections: tuple[str, ...]) -> Exit:
 
 
 @cellcolor.command()
-@click.option("--family", metavar="NAME", help="Only the graphs of this family.")
+@option("--family", None, "Only the graphs of this family.", metavar="NAME")
 @click.option(
     "--open", "only_open", is_flag=True, help="Only graphs whose minimum is open in a search space."
 )

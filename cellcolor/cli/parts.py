@@ -12,11 +12,12 @@ from cellcolor.cli.ending import INTERRUPTS, Exit
 from cellcolor.cli.options import (
     METRES,
     PATH,
-    TIME_LIMIT,
-    UNIT,
+    Real,
     cellcolor,
     json_option,
+    option,
     output_option,
+    shared,
 )
 from cellcolor.cli.progress import at_work
 from cellcolor.cli.terminal import apart_from, print_json, say, say_lines
@@ -30,9 +31,9 @@ _JSON = json_option("One JSON object.")
 
 @cellcolor.command()
 @_PART
-@UNIT
+@shared("unit")
 @output_option("OUT.(html|png|svg)", "A picture with the faulty places marked.")
-@TIME_LIMIT
+@shared("time_limit")
 @_JSON
 def inspect(
     part: Path, unit: str | None, output: Path | None, time_limit: Deadline, as_json: bool
@@ -67,31 +68,17 @@ def inspect(
 
 @cellcolor.command()
 @_PART
-@UNIT
+@shared("unit")
 @output_option("MESH.obj", "The mesh.", required=True)
-@click.option(
-    "--fill-holes",
-    "fill_holes_m",
-    metavar="M",
-    type=METRES,
-    help="Fill holes whose border is at most this long.",
-)
-@click.option(
+@option("--fill-holes", METRES, "Fill holes whose border is at most this long.", to="fill_holes_m")
+@option(
     "--least-component",
-    metavar="SHARE",
-    type=click.FloatRange(0, 1),
+    Real("SHARE", 0, 1),
+    "Drop components smaller than this share of the largest one's area.",
     default=0.01,
-    show_default=True,
-    help="Drop components smaller than this share of the largest one's area.",
 )
-@click.option(
-    "--edge-length",
-    "edge_length_m",
-    metavar="M",
-    type=METRES,
-    help="Remesh to edges of about this length.",
-)
-@TIME_LIMIT
+@option("--edge-length", METRES, "Remesh to edges of about this length.", to="edge_length_m")
+@shared("time_limit")
 @_JSON
 def repair(
     part: Path, output: Path, fill_holes_m: float | None, as_json: bool, **wanted: Any
@@ -126,15 +113,14 @@ def repair(
 @_PART
 @click.argument("arm", metavar="ARM.urdf", type=PATH)
 @output_option("FOLDER", "Folder for the files; it is created if it does not exist.", required=True)
-@click.option(
+@option(
     "--tool",
+    PATH,
+    "The tool, its root fixed to the flange.  [default: a polisher of 100 mm is written]",
     metavar="TOOL.urdf",
-    type=PATH,
-    help="The tool, its root fixed to the flange.  [default: a polisher of 100 mm is written]",
 )
-@click.option("--tip-link", metavar="LINK", default="tip", show_default=True, help="Of the tool.")
-@UNIT
-@TIME_LIMIT
+@option("--tip-link", None, "Of the tool.", default="tip", metavar="LINK")
+@shared("unit", "time_limit")
 def new(part: Path, arm: Path, output: Path, **wanted: Any) -> Exit:
     """Begin with a part and an arm: write a scene and a setup, ready to plan.
 

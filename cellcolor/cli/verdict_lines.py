@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import json
+from typing import TYPE_CHECKING
 
 from cellcolor.cli.terminal import say
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
-from cellcolor.data.verdicts import PlanVerdict, SolutionVerdict
+from cellcolor.data.verdicts import SolutionVerdict
 from cellcolor.data.wording import count, segments_and_lift_offs
 from cellcolor.door.shipped import library
+
+if TYPE_CHECKING:
+    from cellcolor.oracle import Verdict
 
 _FAULTS = 3  # of each kind
 _VERTICES = 10
 _SOLVERS = {"cp-sat": "CP-SAT", "cp-sat-model": "CP-SAT"}  # what has proved their bounds
 
 
-def say_plan(name: str, verdict: PlanVerdict) -> None:
+def say_plan(name: str, verdict: Verdict) -> None:
     """What is said of a plan with a name."""
     say(f"{name}: {'valid' if verdict.valid else 'not valid'}")
     places = {f"vertex_colors[{found.vertex}]": found.place for found in verdict.violations}
@@ -30,13 +34,13 @@ def say_plan(name: str, verdict: PlanVerdict) -> None:
     if verdict.segments is None:
         return
     say(f"  {segments_and_lift_offs(verdict.segments)}")
-    if verdict.lower_bound is None:
+    if verdict.bounds is None:
         return
-    lower, upper = verdict.lower_bound, verdict.upper_bound
+    lower, upper = verdict.bounds.lower, verdict.bounds.upper
     least = f"exactly {lower}" if lower == upper else f"between {lower} and {upper}"
     say(f"  fewest segments on this surface: {least}")
-    if verdict.kept_lower_bound is not None:
-        say(f"  kept, not verified: at least {verdict.kept_lower_bound}")
+    if verdict.kept_lower is not None:
+        say(f"  kept, not verified: at least {verdict.kept_lower}")
     if verdict.optimal:
         say("  optimal" + ("" if verdict.why is None else f", because {verdict.why}"))
     elif verdict.beatable_by:

@@ -33,15 +33,15 @@ import cellcolor.cli, cellcolor.cli.solving
 sent = threading.Event()
 
 @contextlib.contextmanager
-def watched(_file):
-    def report(segments, _bound):
+def watched(_file, _work):
+    def report(text):
         searching = "dfs" in sys.argv or threading.current_thread() is not threading.main_thread()
-        if segments is not None and searching and not sent.is_set():
+        if text.startswith("best") and searching and not sent.is_set():
             sent.set()
             signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
     yield report
 
-cellcolor.cli.solving.progress_of = watched
+cellcolor.cli.solving.line_of = watched
 code = cellcolor.cli.main(sys.argv[1:])
 sys.exit(code if sent.is_set() else 99)
 """
