@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TypedDict
+from dataclasses import fields
+from typing import Any, TypedDict
 
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.leaving_out import Wanted
@@ -54,9 +55,6 @@ def wanted_of(given: SearchOfAPart) -> Wanted:
     Raises:
         InputError: as of :class:`~cellcolor.door.leaving_out.Wanted`.
     """
-    return Wanted(
-        given.get("cover"),
-        given.get("required"),
-        given.get("left_alone"),
-        given.get("uncovered_price"),
-    )
+    known = {field.name for field in fields(Wanted)}
+    members: dict[str, Any] = {name: own for name, own in given.items() if name in known}
+    return Wanted(**members)

@@ -121,9 +121,12 @@ class Oracle:
             InputError: a cell of the surface is not planar, or an option is out of its range.
         """
         if self._proof is None:
-            with naming(self._subject.path):
-                self._proof = prove(self.surface, deadline, **self._options)
+            self._proof = self._made(deadline)
         return self._proof
+
+    def _made(self, deadline: Deadline) -> Proof:
+        with naming(self._subject.path):
+            return prove(self.surface, deadline, **self._options)
 
     @property
     def best(self) -> BetterPainting | None:
@@ -240,20 +243,14 @@ class Oracle:
 
     def _of_path(self, found: PathColors, deadline: Deadline) -> PathVerdict:
         """The verdict on a tool path, by what it comes to in colors."""
-        coloring = found.coloring
-        about: dict[str, Any] = {
-            "surface": self.surface,
-            "plan": coloring.plan,
-            "strokes": found.path.strokes,
-            "color_changes": coloring.color_changes,
-            "reachable": found.reachable,
-            "untouched": len(found.violations),
-        }
+        alike = ("plan", "strokes", "color_changes", "reachable")
+        about: dict[str, Any] = {name: getattr(found, name) for name in alike}
+        about |= {"surface": self.surface, "untouched": len(found.violations)}
         if found.problems:
             return PathVerdict(found.problems, None, self._known, found.violations, **about)
-        of_colors = self._of_colors(coloring.plan, deadline)
+        of_colors = self._of_colors(found.plan, deadline)
         own = {member.name: getattr(of_colors, member.name) for member in fields(Verdict)}
-        return PathVerdict(**own | about, runs=coloring.runs)
+        return PathVerdict(**own | about, runs=found.runs)
 
     def __repr__(self) -> str:
         proved = "" if self._proof is None else f", {self._proof.bounds}"
@@ -286,31 +283,24 @@ class KeepingOracle(Oracle):
         super().__init__(source, time_limit=time_limit)
         self._seconds = time_limit
         self._cache = None if folder is None else ProofCache(folder)
-        self._kept: Proof | None = None
 
-    def prove(self, deadline: Deadline) -> Proof:
+    def _made(self, deadline: Deadline) -> Proof:
         """The proof on disk, or else one made now.
 
         If a kept bound has no certificate, the surface is proved again. If there is no time for it,
         ``kept_lower`` is the unverified bound.
-
-        Raises:
-            InputError: a cell of the surface is not planar, or the folder cannot be written to.
         """
-        if self._kept is not None:
-            return self._kept
-        kept = (
-            None if self._cache is None else self._cache.get(self.surface, self._seconds, deadline)
-        )
-        if kept is None or kept.kept_lower is not None:
-            proved = super().prove(deadline)
-            if kept is None or proved.bounds.lower >= (kept.kept_lower or 0):
-                kept = proved
-                if self._cache is not None:
-                    self._cache.put(self.surface, self._seconds, kept)
-            elif proved.solution is not None and proved.bounds.upper <= kept.bounds.upper:
-                lower = max(kept.bounds.lower, proved.bounds.lower)
-                bounds = ProvenRange(lower, proved.bounds.upper)
-                kept = replace(proved, bounds=bounds, kept_lower=kept.kept_lower)
-        self._kept = kept
-        return kept
+        if self._cache is None:
+            return super()._made(deadline)
+        kept = self._cache.get(self.surface, self._seconds, deadline)
+        if kept is not None and kept.kept_lower is None:
+            return kept
+        proved = super()._made(deadline)
+        if kept is None or proved.bounds.lower >= (kept.kept_lower or 0):
+            self._cache.put(self.surface, self._seconds, proved)
+            return proved
+        if proved.solution is None or proved.bounds.upper > kept.bounds.upper:
+            return kept
+        lower = max(kept.bounds.lower, proved.bounds.lower)
+        bounds = ProvenRange(lower, proved.bounds.upper)
+        return replace(proved, bounds=bounds, kept_lower=kept.kept_lower)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -43,11 +43,9 @@ def inspect(
         OutOfTime: the time limit came first.
     """
     deadline, tell = Deadline.of(time_limit), progress or _nobody
-    name, file = _name(part)
-    with naming(file), extras_for(name):
+    with _opened(part, deadline, tell) as (name, vertices, faces):
         from cellcolor.frontend.parts.inspection import inspect_mesh
 
-        vertices, faces = _mesh(part, deadline, tell)
         return inspect_mesh(name, vertices, faces, unit, deadline, tell)
 
 
@@ -78,12 +76,10 @@ def repair(
         OutOfTime: the time limit came first.
     """
     deadline, tell = Deadline.of(time_limit), progress or _nobody
-    name, file = _name(part)
-    with naming(file), extras_for(name):
+    with _opened(part, deadline, tell) as (_, vertices, faces):
         from cellcolor.frontend.parts.mesh_file import UNITS
         from cellcolor.frontend.parts.repairing import LEAST_SHARE, repair_mesh
 
-        vertices, faces = _mesh(part, deadline, tell)
         scale = UNITS[_unit(vertices, unit)]
         share = LEAST_SHARE if least_component is None else least_component
         return repair_mesh(
@@ -103,24 +99,21 @@ def _nobody(_: str) -> None:
     """Ignores progress when the caller gave no function for it."""
 
 
-def _name(part: Any) -> tuple[str, str | None]:
-    """What to call a part, and its file if it has one."""
-    if isinstance(part, str | PathLike):
-        path = path_of(part)
-        return path.name, str(path)
-    return "part", None
+@contextmanager
+def _opened(part: Any, deadline: Deadline, tell: Telling) -> Iterator[tuple[str, Any, Any]]:
+    """A part's name, vertices and faces; errors inside name its file and the extra they lack."""
+    path = path_of(part) if isinstance(part, str | PathLike) else None
+    name = "part" if path is None else path.name
+    with naming(path), extras_for(name):
+        from cellcolor.frontend.parts.mesh import ArraysObject
+        from cellcolor.frontend.parts.mesh_file import read_mesh
 
-
-def _mesh(part: Any, deadline: Deadline, tell: Telling) -> tuple[Any, Any]:
-    """Vertices and faces of a file or a value."""
-    from cellcolor.frontend.parts.mesh import ArraysObject
-    from cellcolor.frontend.parts.mesh_file import read_mesh
-
-    if isinstance(part, str | PathLike):
+        if path is None:
+            own = ArraysObject.of(part)
+            yield name, own.vertices, own.faces
+            return
         tell("reading")
-        return read_mesh(Path(path_of(part)), deadline)
-    own = ArraysObject.of(part)
-    return own.vertices, own.faces
+        yield name, *read_mesh(path, deadline)
 
 
 def _unit(vertices: Any, unit: str | None) -> str:

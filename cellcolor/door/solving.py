@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from math import degrees
 from os import PathLike
@@ -131,9 +131,10 @@ def solve(
 
     solution = checked.solve(instance, options, solver, told)
     gap.append(GapStep(time.monotonic() - begun, solution.segments, solution.lower_bound))
-    solution = _with_minimum_modulo(_with_raw_minimum(solution, subject, options), subject, options)
-    notes = (*_tolerance_in_words(subject), *left_out)
-    solution = replace(solution, notes=(*notes, *solution.notes))
+    notes = [*_tolerance_in_words(subject), *left_out, *solution.notes]
+    notes += _raw_minimum(subject, options)
+    notes += _minimum_modulo(solution, subject, options)
+    solution = replace(solution, notes=tuple(notes))
     return Result(solution, subject, share, tuple(gap))
 
 
@@ -178,35 +179,28 @@ def _tolerance_in_words(subject: Subject) -> tuple[str, ...]:
     )
 
 
-def _with_raw_minimum(solution: Solution, subject: Subject, options: Options) -> Solution:
-    """The solution with a note on the whole surface, where a scene's slivers were given up."""
+def _raw_minimum(subject: Subject, options: Options) -> Iterator[str]:
+    """A note on the whole surface, where a scene's slivers were given up."""
     built = subject.built
-    raw = None if built is None else built.raw_surface
-    if built is None or raw is None:
-        return solution
-    areas = raw.vertex_areas
-    slivers = areas[built.slivers].sum() / areas.sum()
-    found = _solved_beside(raw, options)
-    note = f"{slivers:.1%} of the area was given up as slivers; with nothing given up: {found}"
-    return replace(solution, notes=(*solution.notes, note))
+    if built is not None and built.raw_surface is not None:
+        areas = built.raw_surface.vertex_areas
+        slivers = areas[built.slivers].sum() / areas.sum()
+        found = _solved_beside(built.raw_surface, options)
+        yield f"{slivers:.1%} of the area was given up as slivers; with nothing given up: {found}"
 
 
-def _with_minimum_modulo(solution: Solution, subject: Subject, options: Options) -> Solution:
-    """The solution with a note on the minimum without joint limits, where a color winds around.
+def _minimum_modulo(solution: Solution, subject: Subject, options: Options) -> Iterator[str]:
+    """A note on the minimum without joint limits, where a color winds around.
 
     Such a color is cut in a few places; wherever it is cut, that minimum is a lower bound.
     """
     modulo = None if subject.built is None else subject.built.modulo_surface
-    if modulo is None:
-        return solution
-    found = _solved_beside(modulo, options)
-    least = found.surface_lower_bound if isinstance(found, Solution) else 0
-    note = "Colors that wind around are cut where the joint limits are; "
-    if least == solution.segments:
-        note += "wherever they are cut, as many segments are needed."
-    else:
-        note += f"wherever they are cut, at least {least} are needed."
-    return replace(solution, notes=(*solution.notes, note))
+    if modulo is not None:
+        found = _solved_beside(modulo, options)
+        least = found.surface_lower_bound if isinstance(found, Solution) else 0
+        needed = "as many segments are" if least == solution.segments else f"at least {least} are"
+        note = "Colors that wind around are cut where the joint limits are; wherever they are cut, "
+        yield f"{note}{needed} needed."
 
 
 def _solved_beside(surface: LabelledSurface, options: Options) -> Solution | str:

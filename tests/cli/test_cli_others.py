@@ -170,15 +170,6 @@ class TestCheck:
         # Nothing was proved, but the plan itself shows what is enough.
         assert (verdict["lower_bound"], verdict["upper_bound"]) == (1, verdict["segments"])
 
-    def test_no_time_to_build_a_scene(self, tmp_path: Path, capsys: Capture) -> None:
-        plan = tmp_path / "plan.json"
-        plan.write_text(Plan((0,)).to_json())
-        scene = INSTANCES / "scenes" / "square.toml"
-        assert run("check", scene, plan, "--time-limit", "1e-6", "--json") == 3
-        out, err = capsys.readouterr()
-        assert "the time limit came before there was a surface; see --time-limit" in err
-        assert "the time limit" in json_lines(out)[0]["error"]
-
 
 def test_a_plan_is_not_checked_against_a_graph_alone(tmp_path: Path, capsys: Capture) -> None:
     plan, graph = tmp_path / "plan.json", RING.with_name("crossing-zeros.json")
