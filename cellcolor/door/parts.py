@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from cellcolor.deadline import Deadline, TimeLimit
+from cellcolor.deadline import Deadline
+from cellcolor.door.asked import Telling, Work, begun
 from cellcolor.door.drawing import Drawing
 from cellcolor.door.extras import extras_for
 from cellcolor.errors import InputError, naming
@@ -19,15 +20,12 @@ if TYPE_CHECKING:
     from cellcolor.frontend.parts.inspection import Inspection
     from cellcolor.frontend.parts.repairing import RepairedPart
 
-Telling = Callable[[str], None]
-
 
 def inspect(
     part: Any,
     *,
     unit: str | None = None,
-    time_limit: TimeLimit = None,
-    progress: Callable[[str], None] | None = None,
+    **work: Unpack[Work],
 ) -> Inspection:
     """Report what a part's mesh has, what is wrong with it, and what a repair would change.
 
@@ -35,14 +33,13 @@ def inspect(
         part: a mesh file (STL, OBJ, PLY), a ``trimesh.Trimesh``, or vertices (n, 3) and faces
             (m, 3).
         unit: ``m``, ``mm``, ``cm`` or ``in``; without it the likely unit is taken and reported.
-        time_limit: seconds, None for no limit.
-        progress: told what is being done.
+        **work: :class:`~cellcolor.door.asked.Work`.
 
     Raises:
         InputError: it cannot be read or looked through; names file and element.
         OutOfTime: the time limit came first.
     """
-    deadline, tell = Deadline.of(time_limit), progress or _nobody
+    deadline, tell = begun(work)
     with _opened(part, deadline, tell) as (name, vertices, faces):
         from cellcolor.frontend.parts.inspection import inspect_mesh
 
@@ -56,8 +53,7 @@ def repair(
     fill_holes_m: float = 0.0,
     least_component: float | None = None,
     edge_length_m: float | None = None,
-    time_limit: TimeLimit = None,
-    progress: Callable[[str], None] | None = None,
+    **work: Unpack[Work],
 ) -> RepairedPart:
     """A part's mesh repaired, so that a scene can use it.
 
@@ -68,14 +64,13 @@ def repair(
         least_component: components with less than this share of the largest one's area are
             dropped; a hundredth if it is not given.
         edge_length_m: remesh to edges of about that length; needs the extra ``parts``.
-        time_limit: seconds, None for no limit.
-        progress: told what is being done.
+        **work: :class:`~cellcolor.door.asked.Work`.
 
     Raises:
         InputError: it cannot be read or made good; names file and element.
         OutOfTime: the time limit came first.
     """
-    deadline, tell = Deadline.of(time_limit), progress or _nobody
+    deadline, tell = begun(work)
     with _opened(part, deadline, tell) as (_, vertices, faces):
         from cellcolor.frontend.parts.mesh_file import UNITS
         from cellcolor.frontend.parts.repairing import LEAST_SHARE, repair_mesh
@@ -93,10 +88,6 @@ def draw_inspection(inspection: Inspection) -> Drawing:
         from cellcolor.pictures.faulty_part import faulty_part
 
         return Drawing(faulty_part(inspection))
-
-
-def _nobody(_: str) -> None:
-    """Ignores progress when the caller gave no function for it."""
 
 
 @contextmanager

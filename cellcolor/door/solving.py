@@ -15,7 +15,7 @@ from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.decomposition import decomposition_of
-from cellcolor.door.asked import SearchOfAPart, options_of, wanted_of
+from cellcolor.door.asked import SearchOfAPart, Work, begun, options_of, wanted_of
 from cellcolor.door.leaving_out import rest_of
 from cellcolor.door.result import GapStep, Result
 from cellcolor.door.subject import (
@@ -36,20 +36,14 @@ if TYPE_CHECKING:
 _BESIDE_SECONDS = 10.0  # there are many small cells, and the proof may take for ever
 
 
-def build(
-    scene: str | PathLike[str] | Scene,
-    *,
-    time_limit: TimeLimit = None,
-    progress: Callable[[str], None] | None = None,
-) -> BuildResult:
+def build(scene: str | PathLike[str] | Scene, **work: Unpack[Work]) -> BuildResult:
     """Compute which colors reach each point of a robot scene's object.
 
     Needs the extra ``frontend``.
 
     Args:
         scene: its file, its shipped name, or the value.
-        time_limit: seconds, None for no limit.
-        progress: told the name of each stage as it begins.
+        **work: :class:`~cellcolor.door.asked.Work`; told is the name of each stage as it begins.
 
     Returns:
         The labelled surface, and what became of every candidate on the way to it.
@@ -58,8 +52,7 @@ def build(
         InputError: the scene, its setup, a URDF or a mesh cannot be used; names file and field.
         OutOfTime: the time limit came first.
     """
-    deadline = Deadline.of(time_limit)
-    return build_scene(scene_or_file(scene), deadline, progress)
+    return build_scene(scene_or_file(scene), *begun(work))
 
 
 def decompose(source: Solvable, *, time_limit: TimeLimit = None) -> Instance:
