@@ -31,28 +31,8 @@ def say_plan(name: str, verdict: Verdict) -> None:
         say(f"  {problem}{where}")
     if len(verdict.problems) > _VERTICES:
         say(f"  {len(verdict.problems) - _VERTICES} more")
-    if verdict.segments is None:
-        return
-    say(f"  {segments_and_lift_offs(verdict.segments)}")
-    if verdict.bounds is None:
-        return
-    lower, upper = verdict.bounds.lower, verdict.bounds.upper
-    least = f"exactly {lower}" if lower == upper else f"between {lower} and {upper}"
-    say(f"  fewest segments on this surface: {least}")
-    if verdict.kept_lower is not None:
-        say(f"  kept, not verified: at least {verdict.kept_lower}")
-    if verdict.optimal:
-        say("  optimal" + ("" if verdict.why is None else f", because {verdict.why}"))
-    elif verdict.beatable_by:
-        say(f"  {count(verdict.beatable_by, 'fewer is', 'fewer are')} enough")
-    else:
-        say("  not known to be optimal, not known to be beatable")
-    if (found := verdict.improvement) is not None:
-        (one, other), (near, far) = found.joined, found.places
-        say(f"  segments {one} and {other} (at vertices {near} and {far}) can be joined")
-        if found.segments_on_mesh > found.segments:
-            fewest = count(found.segments_on_mesh, "segment")
-            say(f"  this mesh is coarse: on it {fewest} are the fewest found")
+    if verdict.segments is not None:
+        say(f"  {verdict}")
 
 
 def say_solution(name: str, verdict: SolutionVerdict) -> None:

@@ -6,8 +6,7 @@ import hashlib
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from os import PathLike
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from pydantic import NonNegativeInt
 
@@ -20,14 +19,11 @@ from cellcolor.data.cells_and_edges import (
     shared_colors,
 )
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.value import Document, Value, members_of
+from cellcolor.data.value import Document, Drawn, Value, members_of
 from cellcolor.data.wording import count
 from cellcolor.errors import refuse
 from cellcolor.files.documents import dump_lines, sha256_of
 from cellcolor.files.validation import json_content, settle
-
-if TYPE_CHECKING:
-    import cellcolor
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +58,7 @@ class KnownResults(Value):
 
 
 @dataclass(frozen=True, repr=False)
-class Instance(Document):
+class Instance(Document, Drawn):
     """A validated topological graph, all that is needed to solve.
 
     Attributes:
@@ -202,12 +198,6 @@ class Instance(Document):
             self, cells=cells, edges=tuple(edges), surface=None, known=None, coverage=None
         )
         return graph, kept
-
-    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
-        """Draw it; see ``cellcolor.show`` for the options in ``view``."""
-        import cellcolor  # the whole package's face, which only somebody who looks at it needs
-
-        return cellcolor.show(self, path, **view)
 
     @cached_property
     def sha256(self) -> str:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +15,7 @@ from cellcolor.data.cells_and_edges import faults_of_color_names
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.value import (
     Document,
+    Drawn,
     RowsOfThree,
     Triples,
     Value,
@@ -28,9 +28,6 @@ from cellcolor.files.documents import sha256_of, take_body
 from cellcolor.files.validation import json_content, settle
 from cellcolor.mesh.oriented import directed_edges
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-
-if TYPE_CHECKING:
-    import cellcolor
 
 _FARTHEST = 1e9  # m
 
@@ -63,7 +60,7 @@ class Crack(Value):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LabelledSurface(WithArrays, Document):
+class LabelledSurface(WithArrays, Document, Drawn):
     """What a front end produces: where the surface is, and which colors reach each point.
 
     Lists and arrays are taken for every member, and put in order; the arrays are copies that
@@ -272,12 +269,6 @@ class LabelledSurface(WithArrays, Document):
             }
             | ({"given_up": self.given_up} if self.given_up else {})
         )
-
-    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
-        """Draw it; see ``cellcolor.show`` for the options in ``view``."""
-        import cellcolor  # the whole package's face, which only somebody who looks at it needs
-
-        return cellcolor.show(self, path, **view)
 
     def to_document(self) -> dict[str, Any]:
         return super().to_document() | {"cracks": [[c.i, c.j, list(c.colors)] for c in self.cracks]}

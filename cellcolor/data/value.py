@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from functools import cache
 from os import PathLike
-from typing import Annotated, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,9 @@ from pydantic_core import CoreSchema
 from cellcolor.errors import InputError
 from cellcolor.files.documents import dump_lines, read_as, take_body, validate
 from cellcolor.files.validation import LeftToNumpy, settle, validate_python
+
+if TYPE_CHECKING:
+    import cellcolor
 
 Count = NonNegativeInt
 
@@ -131,6 +134,26 @@ def _plain(content: Any, whole: bool = False) -> Any:
     if is_dataclass(content):
         return every_member_of(content) if whole else members_of(content)
     return content
+
+
+class Drawn:
+    """What can be drawn."""
+
+    __slots__ = ()
+
+    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
+        """Draw it: ``cellcolor.show``.
+
+        Args:
+            path: a file .html, .png or .svg; None draws without writing, for notebooks.
+            view: what else to look at, see ``cellcolor.show``.
+
+        Raises:
+            InputError: the extra ``viz`` is not installed, or the file cannot be written.
+        """
+        import cellcolor  # the whole package's face, which only somebody who looks at it needs
+
+        return cellcolor.show(self, path, **view)  # type: ignore[arg-type]
 
 
 class WithArrays:
