@@ -6,7 +6,7 @@ import os
 import time
 from dataclasses import replace
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -38,9 +38,6 @@ from cellcolor.files.writing import (
 from cellcolor.pictures.registry import PICTURES
 from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, PAPERS, REFERENCE, solver_names
 
-if TYPE_CHECKING:
-    from cellcolor.data.instance import Instance
-
 
 @cellcolor.command()
 @click.argument("source", metavar="SCENE.toml|SURFACE.json", type=INPUT)
@@ -50,66 +47,49 @@ def build(source: Path, output: Path) -> Exit:
 
     For a scene the labelled surface is written as well, beside the instance.
     """
+    from cellcolor.cli.inputs import open_file
     from cellcolor.cli.tables import nothing_to_cover
     from cellcolor.data.instance import Instance
-    from cellcolor.door.subject import is_scene
+    from cellcolor.data.surface import LabelledSurface
+    from cellcolor.door.subject import Subject, is_scene
 
     check_output(output, kind_of_format(Instance.FORMAT), [source])
     if is_scene(output):
         message = "must not end in .toml: the other commands would take it for a scene"
         raise InputError(str(output), None, message)
+    alone = is_stream(output)  # nothing lies beside a pipe, and nothing can be named from there
+    stem = output.name.removesuffix(".json")
+    surface_path = output.with_name(f"{stem}.surface.json")
+    side_path = output.with_name(f"{stem}.reasons.npz")
+    if is_scene(source) and not alone:
+        check_output(surface_path, kind_of_format(LabelledSurface.FORMAT), [source])
+        check_output(side_path, SIDE_FILE, [source])
     with apart_from(output):
-        instance = (_build_scene if is_scene(source) else _build_surface)(source, output)
+        subject = open_file(source)
+        if subject.given_instance is not None:
+            raise InputError(str(source), "format", "is an instance already")
+        beside: list[Output] = []
+        reference = os.path.relpath(source.resolve(), output.parent.resolve())
+        if (built := subject.built) is not None:
+            side = {"side_file": side_path.name}
+            surface = replace(built.surface, meta=built.surface.meta | side)
+            subject, reference = Subject(source, built, surface), surface_path.name
+            beside = [Output(side_path, SIDE_FILE, [built.candidates.to_bytes()])]
+            beside += [Output.of(surface_path, surface)]
+        named = None if alone else PurePath(reference).as_posix()
+        instance = subject.decomposed(named).instance
+        beside = [] if alone else beside
+        # The instance last: it carries the fingerprint of its surface.
+        write([*beside, Output.of(output, instance)], [source])
+        if built is not None:
+            say_lines(built.report)
+        for file in beside:
+            say(f"wrote {file.path}")
         say(f"wrote {output}: {instance.size}")
     if instance.nothing_to_cover:
         complain(f"{source}: {nothing_to_cover(instance)}")
         return Exit.STOPPED
     return Exit.DONE
-
-
-def _build_scene(source: Path, output: Path) -> Instance:
-    from cellcolor.cli.inputs import open_file
-    from cellcolor.data.surface import LabelledSurface
-    from cellcolor.door.subject import Subject
-
-    stem = output.name.removesuffix(".json")
-    surface_path = output.with_name(f"{stem}.surface.json")
-    side_path = output.with_name(f"{stem}.reasons.npz")
-    alone = is_stream(output)  # nothing lies beside a pipe, and nothing can be named from there
-    if not alone:
-        check_output(surface_path, kind_of_format(LabelledSurface.FORMAT), [source])
-        check_output(side_path, SIDE_FILE, [source])
-    built = open_file(source).built
-    assert built is not None
-    surface = replace(built.surface, meta=built.surface.meta | {"side_file": side_path.name})
-    named = Subject(source, built, surface)
-    instance = named.decomposed(None if alone else surface_path.name).instance
-    files = [Output.of(output, instance)]
-    if not alone:
-        # The instance last: it carries the fingerprint of its surface.
-        files = [
-            Output(side_path, SIDE_FILE, [built.candidates.to_bytes()]),
-            Output.of(surface_path, surface),
-            *files,
-        ]
-    write(files, [source])
-    say_lines(built.report)
-    for file in files[:-1]:
-        say(f"wrote {file.path}")
-    return instance
-
-
-def _build_surface(source: Path, output: Path) -> Instance:
-    from cellcolor.cli.inputs import open_file
-
-    found = open_file(source)
-    if found.given_instance is not None:
-        raise InputError(str(source), "format", "is an instance already")
-    relative = os.path.relpath(source.resolve(), output.parent.resolve())
-    reference = None if is_stream(output) else PurePath(relative).as_posix()
-    instance = found.decomposed(reference).instance
-    write([Output.of(output, instance)], [source])
-    return instance
 
 
 @cellcolor.command()
