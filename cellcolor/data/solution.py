@@ -16,12 +16,10 @@ from cellcolor.data.bounds import Bound, Extent
 from cellcolor.data.cells_and_edges import DartName, twin
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance
-from cellcolor.data.value import Document, Value, adapter_of
+from cellcolor.data.value import Document, Value, adapter_of, read_one_of
 from cellcolor.data.wording import count, listed
-from cellcolor.errors import InputError, naming
+from cellcolor.errors import InputError
 from cellcolor.files.documents import (
-    parse_first_object,
-    read_text,
     take_body,
     validate,
 )
@@ -285,9 +283,8 @@ class Solution(Document):
         Raises:
             InputError: the file cannot be read or holds something that the format forbids.
         """
-        text = read_text(path)
-        with naming(path):
-            return cls.from_document(parse_first_object(text))
+        found: Solution = read_one_of(path, (cls,))
+        return found
 
 
 def witness_in_words(instance: Instance, cells: tuple[int, ...]) -> str | None:

@@ -13,8 +13,15 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, GetCoreSchemaHandler, NonNegativeInt, TypeAdapter
 from pydantic_core import CoreSchema
 
-from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, read_as, take_body, validate
+from cellcolor.errors import InputError, naming
+from cellcolor.files.documents import (
+    dump_lines,
+    parse_first_object,
+    read_as,
+    read_text,
+    take_body,
+    validate,
+)
 from cellcolor.files.validation import LeftToNumpy, settle, validate_python
 
 if TYPE_CHECKING:
@@ -96,6 +103,23 @@ class Document(Value):
             InputError: the file cannot be read or holds something that the format forbids.
         """
         return read_as(path, cls.from_document)
+
+
+def read_one_of(path: str | PathLike[str], kinds: Collection[type[Document]]) -> Any:
+    """The value in a file of one of several formats; of a file of JSON Lines that in the first.
+
+    Raises:
+        InputError: the file cannot be read, has another format, or holds something that its format
+            forbids.
+    """
+    text = read_text(path)
+    with naming(path):
+        document = parse_first_object(text)
+        for kind in kinds:
+            if document.get("format") == kind.FORMAT:
+                return kind.from_document(document)
+        known = " or ".join(repr(kind.FORMAT) for kind in kinds)
+        raise InputError(None, "format", f"must be {known}, is {document.get('format')!r}")
 
 
 class AboutAFile(Document):

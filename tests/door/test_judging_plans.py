@@ -19,7 +19,6 @@ import cellcolor.door.oracle
 import cellcolor.oracle.ranges
 import cellcolor.solvers.checked
 from cellcolor import judge, proven_range
-from cellcolor.checker.vertex_plan import PlanReport
 from cellcolor.cli import main
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
@@ -28,7 +27,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition
 from cellcolor.errors import BeatenBound, InputError
-from cellcolor.oracle import Proof, ProvenRange, Verdict
+from cellcolor.oracle import ProvenRange, Verdict
 from cellcolor.solvers.interface import Options
 from examples import examples
 
@@ -78,14 +77,6 @@ def test_the_papers_search_space_is_not_the_measure() -> None:
     assert (verdict.segments, verdict.lift_offs, verdict.optimal) == (2, 1, True)
     assert verdict.bounds == ProvenRange(2, 2)
     assert verdict.bounds.exact
-
-
-def test_plan_that_can_be_beaten() -> None:
-    row = drawn("AAMMBB AAMMBB AAMMBB", {"A": [RED], "M": [RED, BLUE], "B": [RED]})
-    best = judge(row, Plan((RED,) * 18))
-    assert (best.segments, best.lift_offs, best.optimal, best.beatable_by) == (1, 0, True, 0)
-    worse = judge(row, Plan((RED, RED, BLUE, BLUE, RED, RED) * 3))
-    assert (worse.segments, worse.optimal, worse.beatable_by) == (3, False, 2)
 
 
 def test_cracks_count() -> None:
@@ -174,25 +165,6 @@ def test_no_second_search_for_which_there_is_no_time(
     monkeypatch.setattr(cellcolor.oracle.ranges, "solve", solve)
     proven_range(LabelledSurface.read(CORRIDORS), time_limit=60.0)
     assert searches == expected
-
-
-def test_checking_the_plan_counts(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The plan is checked in 2 s of 60."""
-    clock, limits = _Clock(), list[float]()
-    monkeypatch.setattr(time, "monotonic", clock)
-
-    def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
-        clock.now += 2
-        return cellcolor.checker.vertex_plan.check_plan(surface, plan)
-
-    def prove(_: LabelledSurface, deadline: Deadline, **_options: object) -> Proof:
-        limits.append(deadline.left)
-        return Proof(ProvenRange(1, 8))
-
-    monkeypatch.setattr(cellcolor.door.oracle, "check_plan", check_plan)
-    monkeypatch.setattr(cellcolor.door.oracle, "prove", prove)
-    judge(drawn("AA AA", {"A": [RED]}), Plan((RED,) * 4), time_limit=60.0)
-    assert limits == [58.0]
 
 
 def test_nothing_reachable() -> None:

@@ -225,14 +225,3 @@ def test_a_painting_ends_with_the_deadline_of_the_verdict(
     assert len(given_deadlines) == 1
     monkeypatch.undo()
     assert oracle.judge(WORSE, deadline=Deadline.after(60.0)).improvement is not None
-
-
-def test_the_judged_plan_is_itself_an_upper_bound() -> None:
-    """Without time for a proof only two things are known: one segment is needed, and the plan."""
-    surface = cellcolor.read("wok.surface.json")
-    assert isinstance(surface, cellcolor.LabelledSurface)
-    plan = [colors[0] if colors else None for colors in surface.vertex_colors]
-    verdict = cellcolor.Oracle(surface, time_limit=1e-6).judge(plan)
-    assert verdict.valid
-    assert verdict.bounds is not None
-    assert verdict.bounds.upper == verdict.segments

@@ -66,10 +66,10 @@ def test_read_takes_every_format(tmp_path: Path) -> None:
         file.write_text(value.to_json(), encoding="utf-8")
         assert cellcolor.read(file) == value
     file.write_text('{"format": "cellcolor/other"}', encoding="utf-8")
-    with pytest.raises(InputError, match=r"file\.json: format: must be one of .*cellcolor/plan"):
+    with pytest.raises(InputError, match=r"file\.json: format: must be .*cellcolor/plan"):
         cellcolor.read(file)
     file.write_text('{"format": ["cellcolor/plan"]}', encoding="utf-8")
-    with pytest.raises(InputError, match=r"file\.json: format: must be one of"):
+    with pytest.raises(InputError, match=r"file\.json: format: must be "):
         cellcolor.read(file)
     file.write_text("[]", encoding="utf-8")
     with pytest.raises(InputError, match=r"file\.json: must be a JSON object"):
@@ -229,14 +229,6 @@ def test_check_finds_what_is_wrong() -> None:
     report = cellcolor.check("ring", wrong)
     assert not report.valid and str(report).startswith("not valid: ")
     assert not cellcolor.check("split-cell", found).valid
-
-
-def test_check_heeds_what_is_known() -> None:
-    instance = Instance.read(RING)
-    assert instance.known is not None and instance.known.paper is not None
-    wrong = replace(instance.known, paper=replace(instance.known.paper, segments=3))
-    report = cellcolor.check(replace(instance, known=wrong), cellcolor.solve(instance))
-    assert not report.valid and "known.paper.segments" in str(report)
 
 
 @given(surfaces())
