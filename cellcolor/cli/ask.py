@@ -29,7 +29,7 @@ from cellcolor.cli.terminal import complain, drawn_to, print_json, say, say_line
 from cellcolor.data.prices import MOST_CM2, MOST_PRICE
 
 _POINT = Numbers("a point is three numbers x,y,z", 3)
-_POSE = Numbers("a place is six numbers x,y,z,roll,pitch,yaw", 6, bounded=False)
+_POSE = Numbers("a place is six numbers x,y,z,roll,pitch,yaw", 6)
 _SCENE = click.argument("scene", metavar="SCENE", type=INPUT)
 _UNSOLVED = "the time limit came before the scene itself was solved"
 

@@ -70,21 +70,18 @@ class Real(click.FloatRange):
 
 
 class Numbers(click.ParamType):  # type: ignore[type-arg]
-    """Finite numbers with commas between.
+    """Numbers with commas between; whoever takes them says what they may be.
 
     Args:
         said: what is said where they are something else.
         count: how many; None for any number of them.
         word: what may be said instead of numbers.
-        bounded: whether each has to be finite.
     """
 
     name = "numbers"
 
-    def __init__(
-        self, said: str, count: int | None = None, word: str | None = None, bounded: bool = True
-    ) -> None:
-        self.said, self.count, self.word, self.bounded = said, count, word, bounded
+    def __init__(self, said: str, count: int | None = None, word: str | None = None) -> None:
+        self.said, self.count, self.word = said, count, word
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         if isinstance(value, tuple) or value == self.word:
@@ -93,21 +90,9 @@ class Numbers(click.ParamType):  # type: ignore[type-arg]
             numbers = tuple(map(float, value.split(",")))
         except ValueError:
             numbers = ()
-        if len(numbers) != (self.count or len(numbers) or 1) or (
-            self.bounded and not all(map(math.isfinite, numbers))
-        ):
+        if len(numbers) != (self.count or len(numbers) or 1):
             self.fail(f"{self.said}, is {value!r}.", param, ctx)
         return numbers
-
-
-class _Number(Numbers):
-    """A single finite number."""
-
-    def __init__(self) -> None:
-        super().__init__("must be a number", 1)
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        return super().convert(str(value), param, ctx)[0]
 
 
 class _Input(click.Path):
@@ -250,7 +235,7 @@ def shared(*names: str) -> Decorator:
 
 def ranges(command: Command) -> Command:
     """An option for each variable of a placement."""
-    kind = Numbers("a range is two numbers LOW,HIGH", 2, bounded=False)
+    kind = Numbers("a range is two numbers LOW,HIGH", 2)
     variables = {"x": "m", "y": "m", "z": "m", "roll": "rad", "pitch": "rad", "yaw": "rad"}
     for name, unit in reversed(variables.items()):
         said = f"Where the part may be put, {name} in {unit}. Values not given stay."
@@ -277,14 +262,11 @@ _MOTION = {
 def motion_options(command: Command) -> Command:
     """An option for each key of a setup's table ``[motion]``; those left out are None."""
     for key, meaning in reversed(_MOTION.items()):
-        home = key == "home_rad"
-        several = home or key.startswith("joint")
-        kind = (
-            Numbers("must be numbers N,N,…", word="free" if home else None)
-            if several
-            else _Number()
-        )
-        metavar = "N,N,…" if several else "N"
+        kind: Any = click.FLOAT
+        metavar = "N"
+        if key == "home_rad" or key.startswith("joint"):
+            word = "free" if key == "home_rad" else None
+            kind, metavar = Numbers("must be numbers N,N,…", word=word), "N,N,…"
         name = f"--{key.replace('_', '-')}"
         command = option(name, kind, meaning, to=key, metavar=metavar)(command)
     return command

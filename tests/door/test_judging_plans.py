@@ -173,23 +173,6 @@ def test_nothing_reachable() -> None:
     assert (verdict.segments, verdict.lift_offs, verdict.optimal) == (0, 0, True)
 
 
-def test_invalid_plans() -> None:
-    surface = drawn("AB. AB.", {"A": [RED], "B": [RED, BLUE], ".": []})
-    assert judge(surface, Plan((RED, BLUE, None) * 2)).valid
-    faults = {
-        (GREEN, RED, None, RED, RED, None): "vertex_colors[0]",
-        (RED, RED, None, RED, None, None): "vertex_colors[4]",
-        (RED, RED, None, RED, RED, RED): "vertex_colors[5]",
-        (RED, RED, None): "vertex_colors",
-    }
-    for colors, place in faults.items():
-        verdict = judge(surface, Plan(colors))
-        assert not verdict.valid
-        assert (verdict.segments, verdict.lift_offs, verdict.optimal) == (None, None, None)
-        (problem,) = verdict.problems
-        assert problem.startswith(f"{place}: ")
-
-
 def test_contradiction_is_an_error() -> None:
     surface = drawn("AA AA", {"A": [RED]})
     with pytest.raises(BeatenBound) as found:
