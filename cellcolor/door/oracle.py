@@ -10,7 +10,7 @@ from dataclasses import fields, replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Any, TypeAlias, overload
+from typing import Any, TypeAlias, Unpack, overload
 
 from numpy.typing import NDArray
 
@@ -22,7 +22,8 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
-from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.door.asked import Search, options_of
 from cellcolor.door.joint_plans import AnyPath, PathColors, colors_of_joints, colors_of_path
 from cellcolor.door.reading import color_numbers, read_claim
 from cellcolor.door.result import Result
@@ -32,6 +33,8 @@ from cellcolor.oracle import BetterPainting, PathVerdict, Proof, ProvenRange, Ve
 from cellcolor.oracle.improvement import better_painting, improvement_of
 from cellcolor.oracle.proof_cache import ProofCache
 from cellcolor.painting.paint import paint
+
+SECONDS = 60.0  # of a proof, unless somebody says otherwise
 
 AnyPlan: TypeAlias = (
     Plan
@@ -65,22 +68,18 @@ class Oracle:
         self,
         source: Solvable,
         *,
-        time_limit: TimeLimit = 60.0,
         strands: int | None = None,
-        workers: int | None = None,
-        seed: int = 0,
         bounds: ProvenRange | None = None,
+        **search: Unpack[Search],
     ) -> None:
         """Open the surface; nothing is proved yet.
 
         Args:
             source: a labelled surface, a scene, or an instance that names its surface: its file,
                 its shipped name, the value.
-            time_limit: seconds for the proof, and for building a scene before; None for as long
-                as it takes.
             strands: corridors that may cross one topological edge, None for the usual number.
-            workers: CP-SAT's search workers, None for its portfolio.
-            seed: for all random choices.
+            **search: :class:`~cellcolor.door.asked.Search`: of the proof. The time limit, 60 s if
+                it is left out, is one for building a scene as well.
             bounds: this surface's proven range, if it is known already: then nothing is proved,
                 and no better plan is looked for.
 
@@ -91,9 +90,14 @@ class Oracle:
         if bounds is not None and not isinstance(bounds, ProvenRange):
             message = f"must be what cellcolor.proven_range returns, is {bounds!r:.100}"
             raise InputError(None, "bounds", message)
-        self._time_limit = time_limit
-        self._subject = open_subject(source, Deadline.of(time_limit))
-        self._options: dict[str, Any] = {"strands": strands, "workers": workers, "seed": seed}
+        self._time_limit = search.get("time_limit", SECONDS)
+        options = options_of(search, Search)
+        self._subject = open_subject(source, Deadline.of(self._time_limit))
+        self._options: dict[str, Any] = {
+            "strands": strands,
+            "workers": options.workers,
+            "seed": options.seed,
+        }
         self._known = bounds
         self._proof = None if bounds is None else Proof(bounds)
         self._painting: BetterPainting | None = None
