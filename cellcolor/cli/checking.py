@@ -240,6 +240,13 @@ def _no_verdict(request: Request, why: InputError, code: Exit) -> Exit:
     """Say why there is no verdict: on standard error, and as JSON where that was asked for."""
     complain(why)
     if request.as_json:
-        at = why.file, why.field, 3 if code is Exit.STOPPED else 2
-        print_json(CheckError(request.claim, None, str(why), *at).to_document())  # type: ignore[arg-type]
+        error = CheckError(
+            file=request.claim,
+            valid=None,
+            error=str(why),
+            at_file=why.file,
+            at_field=why.field,
+            exit_code=3 if code is Exit.STOPPED else 2,
+        )
+        print_json(error.to_document())
     return code
