@@ -80,10 +80,10 @@ def read_claim(file: str | PathLike[str]) -> Plan | Solution | ReadTrajectory:
     Raises:
         InputError: it cannot be used; names file and member.
     """
-    form = format_of_claim(file)
-    if form == Trajectory.FORMAT:
-        return read_trajectory(file)
-    return Plan.read(file) if form == Plan.FORMAT else Solution.read(file)
+    if _is_table(file):
+        return read_trajectory_csv(file)
+    found: Plan | Solution | Trajectory = read_one_of(file, (Plan, Solution, Trajectory))
+    return found
 
 
 def read_trajectory(file: str | PathLike[str]) -> ReadTrajectory:
