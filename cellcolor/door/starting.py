@@ -165,6 +165,7 @@ def arm_of(urdf: Path, tool: Path | None, tip: str, folder: Path) -> FoundArm:
         InputError: none does.
     """
     from cellcolor.frontend.arm.urdf import load_urdf
+    from cellcolor.frontend.contact.engine import pairs_of
     from cellcolor.frontend.reach.always_touching import always_touching
     from cellcolor.frontend.reach.prepared_arm import prepare_arm
 
@@ -197,7 +198,7 @@ def arm_of(urdf: Path, tool: Path | None, tip: str, folder: Path) -> FoundArm:
             prepared = prepare_arm(found.setup)
             reach = prepared.kinematics.reach
             # Before a place is sought: with such a pair tested, the arm could stand nowhere.
-            pairs = always_touching(prepared.near_itself)
+            pairs = always_touching(prepared.robot, pairs_of(prepared.robot))
         except InputError as error:
             faults.append(error)
             continue

@@ -8,7 +8,6 @@ from functools import cache, partial
 
 import numpy as np
 import pytest
-import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
@@ -20,7 +19,6 @@ from cellcolor.errors import TooLarge
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.calibrated import missing
 from cellcolor.frontend.arm.newton import polished
-from cellcolor.frontend.arm.polyhedron import Polyhedron
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.between import remains_valid
 from cellcolor.frontend.reach.continuity import link
@@ -99,20 +97,6 @@ def test_steps_with_configurations(arm: str, step: str, monkeypatch: pytest.Monk
         assert np.array_equal(np.asarray(work()), whole, equal_nan=True)
 
 
-def ball(level: int) -> trimesh.Trimesh:
-    return trimesh.creation.icosphere(level)
-
-
-def contains() -> object:
-    mesh = ball(4)
-    return Polyhedron(mesh.vertices, mesh.faces).contains(np.tile(0.9 * mesh.vertices[:50], (4, 1)))
-
-
-def one_point_and_many_faces() -> object:
-    mesh = ball(6)
-    return Polyhedron(mesh.vertices, mesh.faces).contains(np.zeros((1, 3)))
-
-
 def located() -> object:
     scene = prepared("ur5e_wok")
     fine = refined(scene.surface, 0.01, NEVER)
@@ -128,9 +112,6 @@ def near() -> object:
 
 def test_steps_with_faces(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(memory, "MEMORY", SMALL)
-    corners = 8 * 9 * len(ball(6).faces)  # of all faces, which are gathered once
-    assert temporary(contains) <= SMALL + corners / 16
-    assert temporary(one_point_and_many_faces) <= SMALL + 3 * corners
     locate = located()
     assert callable(locate)
     # Of all points together it keeps numbers of triangles, weights, places and normals.

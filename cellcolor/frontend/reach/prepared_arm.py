@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +20,7 @@ from cellcolor.frontend.arm.inverse import (
 )
 from cellcolor.frontend.arm.kinematics import Conditioning, conditioning, task_determinants
 from cellcolor.frontend.arm.loading import load_robot
-from cellcolor.frontend.arm.robot import Robot, TaskSpace, wider
+from cellcolor.frontend.arm.robot import Robot, TaskSpace
 from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at
 from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
 from cellcolor.frontend.parts.placement import rotation_from_rpy
@@ -61,26 +60,6 @@ class PreparedArm:
         """The arm without sheets: with the kinematics of its family."""
         bare = self if self.nameless is None else replace(self, kinematics=self.nameless.kinematics)
         return replace(bare, nameless=None)
-
-    @cached_property
-    def near_object(self) -> Robot:
-        """The robot, wider by the distance that the setup keeps from the object."""
-        return wider(self.robot, self.setup.margins.to_object_m)
-
-    @cached_property
-    def near_obstacles(self) -> Robot:
-        """The same for obstacles."""
-        return wider(self.robot, self.setup.margins.to_obstacles_m)
-
-    @cached_property
-    def near_ground(self) -> Robot:
-        """The same for the ground."""
-        return wider(self.robot, self.setup.margins.to_ground_m)
-
-    @cached_property
-    def near_itself(self) -> Robot:
-        """The same for other links: each of two links is wider by half of their distance."""
-        return wider(self.robot, self.setup.margins.between_links_m / 2)
 
     def inverse(self, points: Array, directions: Array, deadline: Deadline = NEVER) -> Array:
         """All branches (n, branches, joints) in rad, or all solutions if they have no names.

@@ -15,7 +15,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import bytes_of_poses
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.collision import tracked_points, tracked_steps
+from cellcolor.frontend.contact.movement import tracked_points, tracked_steps
 from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.reach.validity_tests import (
     STANDARD_TESTS,
@@ -64,7 +64,7 @@ class Verdicts:
         reasons: (k,) uint8 codes, which index :attr:`Judge.reason_names`.
         determinants: (k,) task determinant in m^3, NaN without solution.
         tracked: (points, k, 3) of the bodies that can move, in the world, m, see
-            :func:`~cellcolor.frontend.contact.collision.tracked_points`; NaN as above.
+            :func:`~cellcolor.frontend.contact.movement.tracked_points`; NaN as above.
         seconds: of forward kinematics and of each test, those of several processes at a time
             counted once.
     """

@@ -12,7 +12,7 @@ from shipped import SCENES, WOK
 
 from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, build_surface
-from cellcolor.frontend.contact.collision import longest_steps
+from cellcolor.frontend.contact.movement import longest_steps
 from cellcolor.frontend.contact.obstacle import CylinderObstacle
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.surface import Surface, along_edges
