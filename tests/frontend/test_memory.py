@@ -198,7 +198,6 @@ def test_more_than_the_machine_has_is_refused(monkeypatch: pytest.MonkeyPatch) -
 def test_a_whole_build(arm: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Beside what is kept for each vertex, no more than the steps that call each other may take."""
     scene = prepared(arm).scene.varied(object={"target_vertices": 1_000})
-    monkeypatch.setattr("cellcolor.frontend.forked._cores", lambda: 1)
     monkeypatch.setattr(memory, "MEMORY", SMALL)
     vertices = 1_000
     slots, joints, points = 8, 6, len(prepared(arm).judge.tracked_steps)

@@ -7,6 +7,8 @@ unnoticed to an arm whose bodies touch one another in a row and of which a part 
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Iterable, Sequence
 
 import coal
@@ -26,7 +28,8 @@ Between = tuple[Body, Body, float]
 Pair = Between | tuple[Body, Shape, float]
 """The same, or a body and what stands still."""
 
-_THREADS = 1  # a process that has had more could not be forked
+_THREADS = min(len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1, 16)
+_OWNER = os.getpid()  # OpenMP's threads do not survive a fork: a child has one
 _PRECISE = True  # without contacts asked for, coal misses flat cylinders up to 0.4 mm inside a mesh
 _PRIMITIVES = {
     "box": coal.Box,
@@ -54,9 +57,9 @@ class Contacts:
                     number[id(each)] = geometry.addGeometryObject(_placed(each, robot))
             geometry.addCollisionPair(pin.CollisionPair(number[id(first)], number[id(second)]))
         self._pool = pin.GeometryPool(model, geometry, _THREADS)
-        requests = self._pool.getGeometryData(0).collisionRequests
-        for request, (_, _, margin) in zip(requests, pairs, strict=True):
-            request.enable_contact, request.security_margin = _PRECISE, margin
+        for data in self._pool.getGeometryDatas():
+            for request, (_, _, margin) in zip(data.collisionRequests, pairs, strict=True):
+                request.enable_contact, request.security_margin = _PRECISE, margin
         self._filled = [
             (holder, other)
             for first, second, _ in pairs
@@ -77,7 +80,8 @@ class Contacts:
         if not self._pairs or not len(hit):
             return hit
         positions = np.asfortranarray(self._positions(configurations).T)
-        hit |= pin.computeCollisionsInParallel(_THREADS, self._pool, positions, True)
+        threads = _THREADS if os.getpid() == _OWNER else 1
+        hit |= pin.computeCollisionsInParallel(threads, self._pool, positions, True)
         for holder, other in self._filled:
             rows = np.flatnonzero(~hit)
             hit[rows] = self._holds(holder, other, configurations[rows])

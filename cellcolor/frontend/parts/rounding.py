@@ -15,7 +15,6 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, Mask, numbered, unit
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.parts.surface import SHARP, Surface
 from cellcolor.frontend.sizes import check_rounding
 from cellcolor.memory import at_once
@@ -46,22 +45,17 @@ def rounded(surface: Surface, radius: float, deadline: Deadline = NEVER) -> Surf
     asked = np.flatnonzero((_rims(surface) < radius) & around.is_bent(radius))
     size = float(around.mesh.areas.mean())
     check_rounding(len(asked), min(np.pi * radius**2 / size, len(around.mesh.corners)))
-    normals = shared(surface.normals.shape, np.float64)
-    normals[:] = surface.normals
-
-    def work(number: int) -> None:
-        parts = [asked[number * _ROWS : (number + 1) * _ROWS]]
-        while parts:
-            deadline.check()
-            rows = parts.pop()
-            found = around.means(rows, radius)
-            if found is None:
-                parts += np.array_split(rows, 2)
-            else:
-                normals[rows] = found
-
-    share_out(work, -(-len(asked) // _ROWS))
-    return replace(surface, normals=np.array(normals), divided=None)
+    normals = surface.normals.copy()
+    parts = [asked[first : first + _ROWS] for first in range(0, len(asked), _ROWS)]
+    while parts:
+        deadline.check()
+        rows = parts.pop()
+        found = around.means(rows, radius)
+        if found is None:
+            parts += np.array_split(rows, 2)
+        else:
+            normals[rows] = found
+    return replace(surface, normals=normals, divided=None)
 
 
 def longest_beside_sharp(surface: Surface) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from collections.abc import Callable
 
 import coal
@@ -135,6 +137,18 @@ def test_obstacles_agree_with_coal(
         distances.append(world.to_solid(shape, pose))
     found = hits(robot, obstacle.solid(), joints)
     agree(found, np.array(distances))
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+def test_a_forked_process_finds_the_same(robot: Robot, joints: Array) -> None:
+    """OpenMP's threads are not there in the child, which must not wait for them."""
+    contacts = Contacts(pairs_of(robot), robot)
+    own = contacts(joints)
+    child = os.fork()
+    if not child:
+        signal.alarm(60)
+        os._exit(int((contacts(joints) != own).any()))
+    assert os.waitpid(child, 0)[1] == 0
 
 
 def test_an_obstacle_takes_away_what_it_hits(scene: Callable[..., Scene]) -> None:
