@@ -12,9 +12,8 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.reach.between import at_domain_border, bytes_of_point, remains_valid
+from cellcolor.frontend.reach.between import at_domain_border, remains_valid
 from cellcolor.frontend.reach.continuity import link
-from cellcolor.frontend.reach.smooth import bytes_of_following
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.memory import chunks
 
@@ -54,7 +53,7 @@ def linked_along(
     limits = (robot.lower, robot.upper) if prepared.setup.constraints.collision else None
     linked = np.zeros((len(edges), candidates.valid.shape[1]), dtype=bool)
     probe = partial(prepared.arm.probe, deadline=deadline)
-    for part in chunks(len(edges), linked.shape[1] * bytes_of_following(robot.joints)):
+    for part in chunks(len(edges), linked.shape[1]):
         deadline.check()
         linked[part] = link(
             prepared.surface, edges[part], candidates, prepared.arm.measure, limits, probe
@@ -89,9 +88,8 @@ def valid_links(
         new = anew | (near_border != at_domain_border(edges, its_candidates.valid))
         linked &= new | before.linked
         reasons[~new] = before.reasons[~new]
-    each = 2 * bytes_of_point(len(tracked))  # of a link: at both its ends
     asked = np.flatnonzero((linked & new).any(axis=1))
-    for part in chunks(len(asked) * prepared.setup.constraints.collision, each):
+    for part in chunks(len(asked) * prepared.setup.constraints.collision):
         deadline.check()
         rows = asked[part]
         linked[rows] &= prepared.workplace.tip.free_along(surface, edges[rows])[:, None]
@@ -102,7 +100,7 @@ def valid_links(
     longest = prepared.judge.tracked_steps
     all_rows, all_branches = np.nonzero(linked & new)
 
-    for part in chunks(len(all_rows), each):
+    for part in chunks(len(all_rows)):
         deadline.check()
         rows, branches = all_rows[part], all_branches[part]
         pieces = np.where(near_border[rows, branches], counts[rows], 1)

@@ -72,7 +72,7 @@ def _reasons(
             tests["object collision"] += _through_object(place)
     others = judge.only(frozenset(names) - tests.keys())
     reasons = np.zeros(len(joints), dtype=np.uint8)
-    for rows in chunks(len(joints), judge.bytes_kept(joints.shape[1])):
+    for rows in chunks(len(joints)):
         found = others(joints[rows], deadline).reasons
         poses = forward(prepared.robot, joints[rows])
         for name in sorted(tests, key=names.index):

@@ -30,7 +30,7 @@ from cellcolor.trajectory_checker.repeated import _near
 
 pytestmark = pytest.mark.second
 
-SMALL = 4_000_000  # bytes, so that little work has many parts
+SMALL = 4_000_000  # bytes, for parts of 300 configurations, so that little work has many
 
 Step = Callable[[], object]
 
@@ -89,7 +89,7 @@ OF_ARM = ("inverse", "follow", "polished", "missing", "judge", "described", "pos
 def test_steps_with_configurations(arm: str, step: str, monkeypatch: pytest.MonkeyPatch) -> None:
     work = dict(of_arm(arm))[step]
     whole = work()
-    monkeypatch.setattr(memory, "MEMORY", SMALL)
+    monkeypatch.setattr(memory, "CHUNK", 300)
     # What solves a calibrated arm works in parts within the parts of who asks.
     deep = 2 if step in ("inverse", "follow") else 1
     assert temporary(work) <= deep * SMALL
@@ -111,7 +111,7 @@ def near() -> object:
 
 
 def test_steps_with_faces(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(memory, "MEMORY", SMALL)
+    monkeypatch.setattr(memory, "CHUNK", 300)
     locate = located()
     assert callable(locate)
     # Of all points together it keeps numbers of triangles, weights, places and normals.
@@ -122,7 +122,7 @@ def test_steps_with_faces(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_points_between_vertices(monkeypatch: pytest.MonkeyPatch) -> None:
     """Also where few edges are cut into many pieces, and where pieces are cut again."""
-    monkeypatch.setattr(memory, "MEMORY", SMALL)
+    monkeypatch.setattr(memory, "CHUNK", 300)
     surface = prepared("ur5e_wok").surface
     edges = surface.edges()[:50]
     ends = np.tile(1.5 * surface.vertices[:, None], (16, 1, 1, 1))
@@ -153,19 +153,19 @@ def test_links(monkeypatch: pytest.MonkeyPatch) -> None:
     edges = surface.edges()
     step = partial(link, surface, edges, candidates, scene.arm.measure, None, probe=scene.arm.probe)
     whole = step()
-    monkeypatch.setattr(memory, "MEMORY", SMALL)
+    monkeypatch.setattr(memory, "CHUNK", 300)
     # Who calls gives so many edges as fit; here are all, whose ends and motions stay beside.
     ends = 8 * len(edges) * 256 * 7
     assert temporary(step) <= ends + 3 * SMALL
     assert (step() == whole).all()
 
 
-@given(st.lists(st.integers(0, 50), max_size=60), st.integers(1, 40), st.integers(1, 90))
-def test_batches_are_whole_and_fit(sizes: list[int], each: int, most: int) -> None:
+@given(st.lists(st.integers(0, 50), max_size=60), st.integers(1, 90))
+def test_batches_are_whole_and_fit(sizes: list[int], most: int) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(memory, "MEMORY", most * each)
-        parts = list(memory.batches(np.array(sizes, dtype=np.int64), each))
-        rows = list(memory.chunks(len(sizes), each))
+        patch.setattr(memory, "CHUNK", most)
+        parts = list(memory.batches(np.array(sizes, dtype=np.int64)))
+        rows = list(memory.chunks(len(sizes)))
     for found in (parts, rows):
         assert [k for part in found for k in range(part.start, part.stop)] == list(
             range(len(sizes))
@@ -198,7 +198,7 @@ def test_more_than_the_machine_has_is_refused(monkeypatch: pytest.MonkeyPatch) -
 def test_a_whole_build(arm: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Beside what is kept for each vertex, no more than the steps that call each other may take."""
     scene = prepared(arm).scene.varied(object={"target_vertices": 1_000})
-    monkeypatch.setattr(memory, "MEMORY", SMALL)
+    monkeypatch.setattr(memory, "CHUNK", 300)
     vertices = 1_000
     slots, joints, points = 8, 6, len(prepared(arm).judge.tracked_steps)
     # Of a solution: joints twice, determinant, reason, color, bodies; three edges a vertex, each

@@ -20,8 +20,6 @@ from cellcolor.frontend.contact.movement import HalfSpace, longest_steps
 from cellcolor.frontend.parts.surface import Faces, Surface, along_edges
 from cellcolor.memory import batches
 
-_POINT = 1_024  # bytes that a point on an edge takes
-
 
 class Tip:
     """All points within the contact radius of the tool's axis, from the tip to the tool's body.
@@ -73,7 +71,7 @@ class Tip:
         way = surface.lengths(edges) + self.body.length * surface.turns(edges)
         step = float(longest_steps(np.array([self.body.radius]))[0])
         pieces = np.maximum(np.ceil(way / step).astype(int), 1)
-        for part in batches(pieces, _POINT):
+        for part in batches(pieces):
             which, number = numbered(pieces[part])
             row = part.start + which
             points, directions = along_edges(surface, edges[row], number / pieces[part][which])

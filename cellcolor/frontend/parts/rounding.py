@@ -17,11 +17,10 @@ from cellcolor.arrays import Array, Index, Mask, numbered, unit
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.parts.surface import SHARP, Surface
 from cellcolor.frontend.sizes import check_rounding
-from cellcolor.memory import at_once
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 _ROWS = 1000  # vertices that are rounded together
-_AROUND = 640  # bytes that a face takes for each vertex that it is around
+_AROUND = 25_000  # faces around vertices that are looked at together
 _SAME = 1e-9  # of the radius; a ball that is smaller by less is no smaller
 _BENT = 1e-6  # between the normals of two faces; less is a plane
 
@@ -166,7 +165,7 @@ class _Around:
             at = np.searchsorted(known, new[~there])
             known, ball = np.insert(known, at, new[~there]), np.insert(ball, at, its_ball[~there])
             which, face, its_ball = which[better], face[better], its_ball[better]
-            if len(known) > at_once(_AROUND) and len(rows) > 1:
+            if len(known) > _AROUND and len(rows) > 1:
                 return None
         which, face = np.divmod(known, count)
         return which, face, ball

@@ -67,7 +67,7 @@ class PreparedArm:
         See :class:`~cellcolor.frontend.arm.inverse.InverseKinematics`.
         """
         parts = []
-        for rows in chunks(len(points), self._bytes_of_solving):
+        for rows in chunks(len(points), self.slots):
             deadline.check()
             parts.append((rows, self.kinematics.solve(points[rows], directions[rows])))
         most = max([1, *(part.shape[1] for _, part in parts)])
@@ -82,11 +82,6 @@ class PreparedArm:
         turn = self.setup.task.turn
         unnamed = _MOST_SOLUTIONS * (1 if turn is None else len(turn.degrees))
         return len(self.kinematics.branches) or unnamed
-
-    @property
-    def _bytes_of_solving(self) -> int:
-        """How many bytes the inverse kinematics of a pose takes at most."""
-        return 128 * self.robot.joints * self.slots
 
     @property
     def measure(self) -> Measure:
@@ -109,7 +104,7 @@ class PreparedArm:
     def follow(self, points: Array, directions: Array, branches: NDArray[np.intp]) -> Array:
         """One branch for each point, (n, joints) in rad, NaN where it has no solution."""
         found = np.empty((len(points), self.robot.joints))
-        for rows in chunks(len(points), self._bytes_of_solving):
+        for rows in chunks(len(points)):
             found[rows] = self.kinematics.solve(points[rows], directions[rows], branches[rows])[
                 :, 0
             ]

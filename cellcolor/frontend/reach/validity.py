@@ -13,7 +13,6 @@ from cellcolor.arrays import Array, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.kinematics import bytes_of_poses
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.movement import tracked_points, tracked_steps
 from cellcolor.frontend.reach.validity_tests import (
@@ -149,9 +148,8 @@ class Judge:
         # A solid has four times the points of a capsule, which single precision makes up for: a
         # tenth of a micrometer does not matter to how far bodies move.
         place = np.float32 if self._workplace.robot.has_solids else np.float64
-        check_memory(
-            count * self.bytes_kept(joints), f"judging {count:,} configurations of the arm"
-        )
+        kept = 8 * joints + 9 + 24 * points
+        check_memory(count * kept, f"judging {count:,} configurations of the arm")
         whole = Verdicts(
             np.zeros(configurations.shape),
             np.zeros(count, np.uint8),
@@ -159,7 +157,7 @@ class Judge:
             np.zeros((points, count, 3), place),
             dict.fromkeys(("forward kinematics", *(test.name for test in self._tests)), 0.0),
         )
-        for rows in chunks(count, bytes_of_poses(joints) + 160 * points):
+        for rows in chunks(count):
             deadline.check()
             part = self._judged(configurations[rows])
             whole.configurations[rows], whole.reasons[rows] = part.configurations, part.reasons
@@ -184,10 +182,6 @@ class Judge:
             before = failed.get(test.name, np.zeros(len(configurations), dtype=bool))
             failed[test.name] = before | test.failed(postures)
         return failed
-
-    def bytes_kept(self, joints: int) -> int:
-        """What the verdict on one configuration takes."""
-        return 8 * joints + 9 + 24 * len(self.tracked_steps)
 
     def _judged(self, configurations: Array) -> Verdicts:
         count = len(configurations)

@@ -19,7 +19,6 @@ from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.reach.between import (
     at_domain_border,
-    bytes_of_point,
     remains_valid,
     strides,
 )
@@ -74,7 +73,7 @@ def test_many_points_are_asked_in_batches(monkeypatch: pytest.MonkeyPatch) -> No
         return points[:, 1] > 0
 
     whole = checked(surface, test, 40)
-    monkeypatch.setattr("cellcolor.memory.MEMORY", 100 * bytes_of_point(1))
+    monkeypatch.setattr("cellcolor.memory.CHUNK", 100)
     total = asked.pop()
     batched = checked(surface, test, 40)
     assert (batched == whole).all()
