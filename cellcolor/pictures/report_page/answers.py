@@ -36,7 +36,8 @@ def _front_card(front: Front) -> Card:
     ]
     modes = tuple(point.in_short for point in front)
     curve = tuple((float(point.lift_offs), 100 * point.covered_share) for point in front)
-    return Card("Lift-offs against area", (text,), tuple(rows), modes=modes, curve=curve)
+    texts = (text,) if front.complete else (text, _UNFINISHED)
+    return Card("Lift-offs against area", texts, tuple(rows), modes=modes, curve=curve)
 
 
 def _explanation_card(found: Explanation) -> Card:
@@ -98,7 +99,8 @@ def _set_ups_card(found: SetUpPlan) -> Card:
         f"{count(found.lift_offs, 'lift-off')} within them cover "
         f"{100 * found.covered_share:.1f} % of what any candidate reaches. {proof}"
     )
-    return Card("Several set-ups", (text,), tuple(rows))
+    texts = (text,) if found.complete else (text, _UNFINISHED)
+    return Card("Several set-ups", texts, tuple(rows))
 
 
 def _place(pose: Pose) -> str:
