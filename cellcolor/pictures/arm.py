@@ -14,7 +14,7 @@ from cellcolor.frontend import BuildResult
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.collision import HalfSpace, segment_distance
+from cellcolor.frontend.contact.movement import HalfSpace
 from cellcolor.frontend.contact.obstacle import Obstacle
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.pictures.palette import FAINT, LINES, WARNING
@@ -200,8 +200,10 @@ def _free_view(robot: Robot, poses: Poses, normal: Array) -> Array:
     clearance = np.full(len(rays), 0.15)
     for body in robot.bodies:
         rotation, origin = poses.body_rotation[0, body.joint], poses.body_origin[0, body.joint]
-        ends = [np.tile(origin + rotation @ end, (len(rays), 1)) for end in (body.start, body.end)]
-        gap = segment_distance(starts, starts + 3.0 * rays, ends[0], ends[1]) - body.radius
-        clearance = np.minimum(clearance, gap)
+        axis = np.linspace(origin + rotation @ body.start, origin + rotation @ body.end, _ALONG)
+        off = axis - starts[:, None]
+        along = np.maximum(np.einsum("rpx,rx->rp", off, rays), 0.0)
+        apart = np.linalg.norm(off - along[:, :, None] * rays[:, None], axis=2)
+        clearance = np.minimum(clearance, apart.min(axis=1) - body.radius)
     best: Array = rays[np.argmax(score + clearance)]
     return best
