@@ -113,8 +113,10 @@ def _lines(planned: PlannedMotion, language: Language, linear: bool) -> Iterator
     yield from language.head(job)
     for number, own in enumerate(found, start=1):
         moves = _moves(planned, controller, axes, own, linear)
-        yield from language.begin(number, next(moves))
-        pressing = False
+        start = next(moves)
+        yield from language.begin(number, start)
+        yield from language.press(job) if start.presses else ()
+        pressing = start.contact
         for move in moves:
             if move.begins or (not move.contact and pressing):
                 yield language.remark(f"contact {'begins' if move.contact else 'ends'}")
@@ -165,9 +167,9 @@ def _moves(
     linear: bool,
 ) -> Iterator[Move]:
     """The places that a stretch leads to, the first one where it begins."""
-    base = np.linalg.inv(planned.part) @ axes.tips(own.joints)
-    turns, tips = quaternions(base[:, :3, 0], base[:, :3, 2]), base[:, :3, 3]
-    presses = _presses(own, -base[:, :3, 2]) if planned.force_n else np.zeros(0, dtype=np.int64)
+    poses = np.linalg.inv(planned.part) @ axes.tips(own.joints)
+    turns, tips = quaternions(poses[:, :3, 0], poses[:, :3, 2]), poses[:, :3, 3]
+    presses = _presses(own, -poses[:, :3, 2]) if planned.force_n else np.zeros(0, dtype=np.int64)
     edges = np.flatnonzero(np.diff(own.contact))
     kept = np.concatenate([edges, edges + 1, presses])
     rows = via_points(own.times, own.joints / WITHIN, kept)
@@ -176,8 +178,8 @@ def _moves(
     straight = own.contact[1:] & own.contact[:-1] & linear  # of each step
     if linear:
         way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(tips, axis=0), axis=1))])
-        poses = np.concatenate([tips / BESIDE, turns / (ASIDE / 2)], axis=1)
-        touching = via_points(way, poses, kept)
+        asked = np.concatenate([tips / BESIDE, turns / (ASIDE / 2)], axis=1)
+        touching = via_points(way, asked, kept)
         rows = np.union1d(rows[~own.contact[rows]], touching[own.contact[touching]])
     degrees = shown(controller, own.joints)
     feeds = np.linalg.norm(slopes(own.times, tips), axis=1)
