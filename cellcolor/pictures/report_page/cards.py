@@ -21,6 +21,7 @@ def cards_of(report: MotionReport) -> tuple[Card, ...]:
     """All of them, those with nothing to tell left out."""
     cards = (
         _verdict(report),
+        _warnings(report),
         _lacking(report),
         _proof(report),
         _feed(report),
@@ -96,6 +97,12 @@ def _verdict(report: MotionReport) -> Card:
     if any(time is not None for time in times):
         texts.append("A click on a row, on its mark on the part or in the bar of time leads there.")
     return Card(title, tuple(texts), tuple(rows), False, times=times)
+
+
+def _warnings(report: MotionReport) -> Card | None:
+    """Likely mistakes in the scene, and what its numbers depend on."""
+    found = report.built.report.warnings
+    return Card("Warnings", found, (), None) if found else None
 
 
 def _lacking(report: MotionReport) -> Card | None:
