@@ -66,19 +66,15 @@ def controller_of(planned: PlannedMotion) -> Controller:
         raise NotForThisArm("the arm does not have six joints that turn")
     if given is None and not _named_as_ur(axes):
         raise NotForThisArm("the setup names no controller (table [controller], key language)")
-    if given is None or (given.language == "urscript" and given == _plain(given)):
+    controller = given or Controller(language="urscript")
+    if _is_ur(controller):
         _check_ur(axes)
-    return given or Controller(language="urscript")
+    return controller
 
 
-def _plain(given: Controller) -> Controller:
-    """The controller without signs and offsets."""
-    return Controller(
-        language=given.language,
-        base_link=given.base_link,
-        tool=given.tool,
-        work_object=given.work_object,
-    )
+def _is_ur(controller: Controller) -> bool:
+    """Whether the arm has to be one of Universal Robots: angles are theirs, none is changed."""
+    return controller.language == "urscript" and controller.counts_as_urdf
 
 
 def shown(controller: Controller, joints: Array) -> Array:
@@ -94,7 +90,7 @@ def _lines(planned: PlannedMotion, language: Language, linear: bool) -> Iterator
     step = planned.step_s or (UR_STEP if language.stepped else None)
     found = stretches(planned.trajectory, step)
     base = axes.base
-    if controller.language == "urscript" and controller == _plain(controller):
+    if _is_ur(controller):
         base = _ur_base(axes)
     tool, work_object = controller.frames
     job = Job(
