@@ -318,6 +318,11 @@ class Controller(Table):
         return self.tool or usual[0], self.work_object or usual[1]
 
     @property
+    def counts_as_urdf(self) -> bool:
+        """Whether the controller shows the URDF's angles."""
+        return set(self.signs) == {1} and not any(self.offsets_deg) and not self.coupling
+
+    @property
     def coupling(self) -> int:
         """``j23_factor`` as it is or would be."""
         return int(self.language == "fanuc") if self.j23_factor is None else self.j23_factor
