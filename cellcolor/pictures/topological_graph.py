@@ -17,7 +17,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.decomposition import Decomposition
-from cellcolor.pictures.palette import INK, LINES
+from cellcolor.pictures.palette import INK, PAINTS
 from cellcolor.pictures.picture import Outline, Picture2D, PlaneLine
 
 _DEAD = "dead edge"
@@ -66,8 +66,8 @@ def draw_graph(
         for place, color in enumerate(colors):
             shifted = _beside(path, (place - (len(colors) - 1) / 2) * 2.2 * unit)
             name = f"{color}: {graph.colors[color]}"
-            lines.append(PlaneLine(name, LINES[color % len(LINES)], shifted, 2.0))
-        if len(graph.colors) > len(LINES) and colors:
+            lines.append(PlaneLine(name, PAINTS[color % len(PAINTS)], shifted, 2.0))
+        if len(graph.colors) > len(PAINTS) and colors:
             texts.append((",".join(map(str, colors)), path[len(path) // 2], 6.0))
 
     outlines: list[Outline] = []
@@ -84,7 +84,7 @@ def draw_graph(
         "as seen from outside; black bars separate the loops of a cell with holes.",
         "Edge: one line for each joinable color. Positions mean nothing.",
     ]
-    if len(graph.colors) > len(LINES):
+    if len(graph.colors) > len(PAINTS):
         notes.append("Line colors repeat: the numbers on the edges identify the colors.")
     cells, edges = count(len(graph.cells), "cell"), count(len(graph.edges), "edge")
     title = f"{graph.name}: {cells}, {edges}"
@@ -106,7 +106,7 @@ def _node(
     bounds = np.linspace(0, 2 * np.pi, len(cell.colors) + 1) + np.pi / 2
     for color, start, end in zip(cell.colors, bounds[:-1], bounds[1:], strict=True):
         wedge = _arc(center, radius, start, end, hub=len(cell.colors) > 1)
-        shapes.append(Outline(LINES[color % len(LINES)], wedge))
+        shapes.append(Outline(PAINTS[color % len(PAINTS)], wedge))
     shapes.append(Outline("#FFFFFF", _arc(center, 0.86 * radius, 0.0, 2 * np.pi, hub=False)))
     if len(cell.loops) > 1:
         shapes += [

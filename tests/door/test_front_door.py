@@ -97,7 +97,7 @@ PUBLIC = [
 """Whoever changes this list changes what others rely on."""
 
 FRONTEND = {"pinocchio", "trimesh", "fcl", "coal", "igl", "scipy", "cellcolor.frontend"}
-PICTURES = {"plotly", "matplotlib", "cellcolor.pictures"}
+PICTURES = {"matplotlib", "cellcolor.pictures"}
 PACKAGE = Path(cellcolor.__file__).parent
 
 

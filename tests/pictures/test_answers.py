@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import base64
 import html
-import json
 import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from pages import DESKTOP, opened
+from pages import DESKTOP, opened, page_data, unpacked
 from stand_in import stand_in
 
 import cellcolor
 from cellcolor.pictures.report_page.content import AnsweredScene, MotionReport
-from cellcolor.pictures.report_page.page import render_page
+from cellcolor.pictures.report_page.page import render_report
 from cellcolor.questions.explanation import Explanation, RelaxedMinimum
 from cellcolor.questions.placements import PlacedMinimum, Placements
 from cellcolor.questions.set_ups import SetUp, SetUpPlan
@@ -37,7 +35,7 @@ def page(*answers: object) -> str:
         made.verdict,
         answered=AnsweredScene(made.built.surface, subject.decomposition, answers),
     )
-    return render_page(report).decode()
+    return render_report(report).decode()
 
 
 @pytest.fixture(scope="module")
@@ -61,8 +59,8 @@ def test_each_point_of_a_front_fills_what_it_covers(front: cellcolor.Front) -> N
     assert [row[:2] for row in rows_of(text, "Lift-offs against area")[1:]] == [
         [str(point.lift_offs), f"{100 * point.covered_share:.1f} %"] for point in front
     ]
-    (data,) = re.findall(r'<script type="application/json" id="data">(.*?)</script>', text)
-    modes = [mode for mode in json.loads(data)["modes"] if mode.get("button") is False]
+    data = page_data(text)
+    modes = data["modes"][data["buttons"] :]
     linked = re.findall(r'<tr data-mode="([^"]*)"', text)
     assert [mode["name"] for mode in modes] == linked and len(linked) == len(front.points)
     assert len(re.findall(r"<circle", text)) == len(linked)
@@ -71,7 +69,7 @@ def test_each_point_of_a_front_fills_what_it_covers(front: cellcolor.Front) -> N
     given = stand_in(NAME, 260).built.surface
     can_be = np.array([bool(own) for own in given.vertex_colors])
     for mode, point in zip(modes, front, strict=True):
-        labels = np.frombuffer(base64.b64decode(mode["labels"]["base64"]), "<i2")
+        labels = unpacked(mode["labels"])
         assert len(labels) == len(painted.surface.vertices)
         own = labels[: len(areas)]  # a refined surface has the old vertices first
         names = [one["name"] for one in mode["classes"]]
