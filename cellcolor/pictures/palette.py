@@ -70,5 +70,5 @@ def mixed(paints: Iterable[str]) -> str:
     """The mean of paints, for what can be in any of them, paler the more they are."""
     parts = [[int(paint[at : at + 2], 16) for at in (1, 3, 5)] for paint in paints] or [[255] * 3]
     mean = np.mean(parts, axis=0)
-    pale = mean + (255 - mean) * 0.7 * (1 - 1 / len(parts))
+    pale = mean + (255 - mean) * 0.5 * (1 - 1 / len(parts))
     return "#" + "".join(f"{round(part):02X}" for part in pale)

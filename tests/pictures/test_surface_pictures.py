@@ -132,8 +132,8 @@ def test_a_color_has_one_paint_in_every_picture() -> None:
 
 def test_where_several_colors_are_available_their_paints_are_mixed_and_paler() -> None:
     assert mixed(["#204060"]) == "#204060"
-    # The mean is 30 50 70; 0.7 times a half of the way from there to FF.
-    assert mixed(["#204060", "#406080"]) == "#788DA2"
+    # The mean is 30 50 70; half of a half of the way from there to FF.
+    assert mixed(["#204060", "#406080"]) == "#647C94"
     assert mixed([]) == "#FFFFFF"
 
 
