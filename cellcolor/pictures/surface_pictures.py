@@ -42,49 +42,38 @@ _MOST_MARKED = 8  # vertices of a plan that is not valid
 
 def draw_cells(surface: LabelledSurface, decomposition: Decomposition) -> Picture3D:
     """Every cell in the paint of its color; of several colors their paints are mixed."""
-    instance = decomposition.instance
-    cells = np.array(decomposition.vertex_cell, dtype=np.int64)
-    number = len(instance.cells)
-    labels = np.where(cells == OUTSIDE, bare_labels(surface, number), cells)
-    share = shares(surface, labels, number + 2)
+    cells = decomposition.instance.cells
     classes = [
         VertexClass(
-            f"cell {cell.id} {{{', '.join(map(str, cell.colors))}}}, {share[cell.id]}",
+            f"cell {cell.id} {{{', '.join(map(str, cell.colors))}}}",
             fill_of(surface, cell.colors),
             str(cell.id),
         )
-        for cell in instance.cells
+        for cell in cells
     ]
+    title = f"{surface.name}: {count(len(cells), 'cell')}"
+    view = with_shares(surface, title, np.array(decomposition.vertex_cell, dtype=np.int64), classes)
     notes = ("Cell: {available colors}, share of the surface.", *surface_notes(surface))
-    return draw_surface(
-        surface,
-        SurfaceView(
-            f"{surface.name}: {count(number, 'cell')}",
-            labels,
-            [*classes, *bare_classes(*share[number:])],
-            cracks=surface.crack_colors,
-            notes=(*notes, *(f"{at}: {name}" for at, name in enumerate(surface.colors))),
-        ),
-    )
+    notes += tuple(f"{number}: {name}" for number, name in enumerate(surface.colors))
+    return draw_surface(surface, replace(view, cracks=surface.crack_colors, notes=notes))
 
 
 def draw_color(surface: LabelledSurface, color: int) -> Picture3D:
     """Where one color is available, and where only others are."""
-    covered = np.array(
-        [0 if color in own else 1 if own else 2 for own in surface.vertex_colors], dtype=np.int64
-    )
-    labels = np.where(covered == 2, bare_labels(surface, 2), covered)
-    share = shares(surface, labels, 4)
     name = surface.colors[color]
-    classes = [
-        VertexClass(f"{name}, {share[0]}", fill_of(surface, [color])),
-        VertexClass(f"other colors only, {share[1]}", OTHERS),
-        *bare_classes(*share[2:]),
-    ]
+    labels = [0 if color in own else 1 if own else -1 for own in surface.vertex_colors]
+    view = with_shares(
+        surface,
+        f"{surface.name}: color {color}, {name}",
+        np.array(labels, dtype=np.int64),
+        [
+            VertexClass(name, fill_of(surface, [color])),
+            VertexClass("other colors only", OTHERS),
+        ],
+    )
     cracks = [pair for pair, colors in surface.crack_colors.items() if color in colors]
-    note = "Shares of the surface. Cracks are those of this color."
-    title = f"{surface.name}: color {color}, {name}"
-    return draw_surface(surface, SurfaceView(title, labels, classes, cracks=cracks, notes=(note,)))
+    notes = ("Shares of the surface. Cracks are those of this color.",)
+    return draw_surface(surface, replace(view, cracks=cracks, notes=notes))
 
 
 def draw_segments(
@@ -125,8 +114,14 @@ def by_solution(
         labels[np.isin(cells, divided)] = segments
     color = {sub.segment: sub.color for cell in solution.cells or () for sub in cell.subcells}
     share = shares_of(instance, solution)
-    own = [percent(*one) for one in share.segments]
-    classes = segment_classes(surface, [color[number] for number in range(segments)], own)
+    classes = [
+        replace(one, name=f"{one.name}, {percent(*own)}")
+        for one, own in zip(
+            segment_classes(surface, [color[number] for number in range(segments)]),
+            share.segments,
+            strict=True,
+        )
+    ]
     classes.append(VertexClass("cut between segments", CUT))
     notes = [
         f"Status: {solution.status}. Shares of the surface. Black lines: borders of cells.",
@@ -204,15 +199,10 @@ def draw_plan(surface: LabelledSurface, plan: Plan, marked: tuple[int, ...] = ()
 
 
 def _of_plan(surface: LabelledSurface, plan: Plan, segment_of: Index, segments: int) -> SurfaceView:
-    labels = np.where(segment_of >= 0, segment_of, bare_labels(surface, segments))
-    share = shares(surface, labels, segments + 2)
     color_of = dict(zip(segment_of.tolist(), plan.vertex_colors, strict=True))
-    colors = [color_of.get(number) for number in range(segments)]
-    return SurfaceView(
-        f"{surface.name}: plan with {segments_and_lift_offs(segments)}",
-        labels,
-        [*segment_classes(surface, colors, share), *bare_classes(*share[segments:])],
-    )
+    classes = segment_classes(surface, [color_of.get(number) for number in range(segments)])
+    title = f"{surface.name}: plan with {segments_and_lift_offs(segments)}"
+    return with_shares(surface, title, segment_of, classes)
 
 
 def draw_reasons(
@@ -259,17 +249,31 @@ def by_reason(
     return SurfaceView(f"{surface.name}: reach of {who}", labels, classes, notes=tuple(notes))
 
 
-def segment_classes(
-    surface: LabelledSurface, colors: Sequence[int | None], share: Sequence[str]
-) -> list[VertexClass]:
-    """Segments 0, 1, … by their colors, None where one has no vertex, and their shares as text."""
+def with_shares(
+    surface: LabelledSurface, title: str, labels: Index, classes: Sequence[VertexClass]
+) -> SurfaceView:
+    """A view of classes and of what has no color, each with its share of the surface.
+
+    Args:
+        labels: (n,) the class of each vertex, -1 where it has no color.
+    """
+    labels = np.where(labels < 0, bare_labels(surface, len(classes)), labels)
+    share = shares(surface, labels, len(classes) + 2)
+    named = [
+        replace(one, name=f"{one.name}, {own}") for one, own in zip(classes, share, strict=False)
+    ]
+    return SurfaceView(title, labels, named + bare_classes(*share[len(classes) :]))
+
+
+def segment_classes(surface: LabelledSurface, colors: Sequence[int | None]) -> list[VertexClass]:
+    """Segments 0, 1, … by their colors, None where one has no vertex."""
     return [
         VertexClass(
-            f"segment {number}: {'empty' if color is None else surface.colors[color]}, {own}",
+            f"segment {number}: {'empty' if color is None else surface.colors[color]}",
             fill_of(surface, () if color is None else [color]),
             str(number),
         )
-        for number, (color, own) in enumerate(zip(colors, share, strict=False))
+        for number, color in enumerate(colors)
     ]
 
 

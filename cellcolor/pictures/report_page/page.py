@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import html
-import math
-from collections.abc import Sequence
 
 from cellcolor.data.wording import count
 from cellcolor.pictures.report_page.cards import badges_of, cards_of
@@ -60,8 +58,6 @@ def _verdict_class(good: bool | None, first: str = "") -> str:
 def _card(card: Card) -> str:
     parts = [f"<h2>{html.escape(card.title)}</h2>"]
     parts += [f"<p>{html.escape(text)}</p>" for text in card.paragraphs]
-    if card.curve:
-        parts.append(_plot(card.curve, card.modes))
     if card.rows:
         head, *rows = card.rows
         lines = []
@@ -87,33 +83,3 @@ def _shows(mode: str, time: float | None = None) -> str:
     if time is not None:
         return f' data-time="{time}" class="link" tabindex="0"'
     return f' data-mode="{html.escape(mode)}" tabindex="0"' if mode else ""
-
-
-def _plot(points: Sequence[tuple[float, float]], modes: Sequence[str]) -> str:
-    """Points that are joined by lines, as an SVG drawing; y is in percent."""
-    wide, high, left, low = 360, 166, 40, 122
-    least = 10 * math.floor(min(y for _, y in points) / 10)
-    most_x = max(1.0, *(x for x, _ in points)) if len(points) > 1 else 1.0
-    across, up = (wide - left - 20) / most_x, (low - 12) / (100 - min(least, 90))
-    at = [(left + 8 + across * x, low - up * (y - min(least, 90))) for x, y in points]
-    marks = [
-        f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5"{_shows(mode)}><title>{html.escape(mode)}</title>'
-        "</circle>"
-        for (x, y), mode in zip(at, modes, strict=True)
-    ]
-    line = " ".join(f"{x:.1f},{y:.1f}" for x, y in at)
-    ticks = [
-        f'<text x="{x:.1f}" y="{low + 17}" text-anchor="middle">{count:g}</text>'
-        for (x, _), (count, _) in zip(at, points, strict=True)
-    ]
-    ticks += [
-        f'<text x="{left - 4}" y="{low - up * (value - min(least, 90)) + 4:.1f}" '
-        f'text-anchor="end">{value:g} %</text>'
-        for value in (min(least, 90), 100)
-    ]
-    return (
-        f'<svg class="plot" viewBox="0 0 {wide} {high}" role="img" aria-label="Share covered by '
-        f'number of lift-offs"><path d="M{left} 8V{low}H{wide - 8}"/>'
-        f'<polyline points="{line}"/>{"".join(marks)}{"".join(ticks)}'
-        f'<text x="{wide - 8}" y="{high - 8}" text-anchor="end">lift-offs</text></svg>'
-    )

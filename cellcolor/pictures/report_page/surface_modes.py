@@ -16,12 +16,10 @@ from cellcolor.pictures.picture import Picture3D, VertexClass
 from cellcolor.pictures.report_page.content import MotionReport
 from cellcolor.pictures.surface_pictures import (
     CUT,
-    bare_classes,
-    bare_labels,
     by_reason,
     by_segment,
     segment_classes,
-    shares,
+    with_shares,
 )
 from cellcolor.pictures.why_not_fewer import view_of
 from cellcolor.questions.front import Front, FrontPoint
@@ -73,11 +71,9 @@ def _front_view(
         own = {sub.segment for sub in division.subcells}
         colors |= {sub.segment: sub.color for sub in division.subcells}
         of_cell[kept[division.id]] = own.pop() if len(own) == 1 else divided
+    classes = segment_classes(surface, [colors.get(number) for number in range(segments)])
+    classes.append(VertexClass("divided between segments", CUT))
+    classes.append(VertexClass("left out", WARNING))
     cells = np.array(decomposition.vertex_cell, dtype=np.int64)
-    labels = np.where(cells == OUTSIDE, bare_labels(surface, segments + 2), of_cell[cells])
-    share = shares(surface, labels, segments + 4)
-    classes = segment_classes(surface, [colors.get(number) for number in range(segments)], share)
-    classes.append(VertexClass(f"divided between segments, {share[divided]}", CUT))
-    classes.append(VertexClass(f"left out, {share[left_out]}", WARNING))
-    classes += bare_classes(*share[segments + 2 :])
-    return SurfaceView(point.in_short, labels, classes)
+    labels = np.where(cells == OUTSIDE, OUTSIDE, of_cell[cells])
+    return with_shares(surface, point.in_short, labels, classes)
