@@ -55,7 +55,7 @@ def draw_arm(build: BuildResult, vertex: int, branch: int) -> Picture3D:
         links.setdefault(body.link, []).append(_placed(body, poses))
     fills = link_fills(robot)
     layers = [Layer(link, fills[link], *_joined(meshes)) for link, meshes in links.items()]
-    arm = [layer.points for layer in layers]
+    arm = np.concatenate([layer.points for layer in layers])
     layers.append(Layer("object", FAINT, build.surface.vertices, build.surface.faces))
     layers += surroundings(build.prepared)
     target, normal = build.surface.vertices[vertex], build.surface.vertex_normals[vertex]
@@ -79,7 +79,7 @@ def draw_arm(build: BuildResult, vertex: int, branch: int) -> Picture3D:
             f"Joints: {joints}",
             f"Vertex [m]: {place}",
         ),
-        towards=eye(build.surface, BESIDE, (vertex, np.concatenate(arm))),
+        towards=eye(build.surface, BESIDE, [(target, normal, arm)]),
     )
 
 
@@ -104,6 +104,12 @@ def surroundings(prepared: PreparedScene) -> list[Layer]:
         meshes = [_obstacle_mesh(each, scene.folder) for each in scene.obstacle]
         layers.append(Layer("obstacles", OBSTACLE, *_joined(meshes)))
     return layers
+
+
+def arm_points(robot: Robot, joints: Array) -> Array:
+    """Points (k, 3) of all bodies in a configuration (s,), in the world."""
+    poses = forward(robot, joints[None])
+    return np.concatenate([_placed(body, poses)[0] for body in robot.bodies])
 
 
 def body_mesh(body: Body) -> _Mesh:

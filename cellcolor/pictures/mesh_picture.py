@@ -143,7 +143,7 @@ def _depth(surface: LabelledSurface, labels: Index) -> Index:
 def eye(
     surface: LabelledSurface,
     rises: Sequence[float] = (28, 40, 65, -30),
-    seen_past: tuple[int, Array] | None = None,
+    seen_past: Sequence[tuple[Array, Array, Array]] = (),
 ) -> Array:
     """A unit vector from the scene to the eye, so that most of the part's outside is seen.
 
@@ -152,7 +152,8 @@ def eye(
 
     Args:
         rises: the heights to look from, degrees.
-        seen_past: a vertex that is to be seen, and points (k, 3) that are not to hide it.
+        seen_past: places (3,) that are to be seen, each with its normal (3,) and with points
+            (k, 3) of an arm that may hide it.
     """
     normals, middle = surface.vertex_normals, surface.vertices.mean(axis=0)
     away = middle[:2] / max(float(np.linalg.norm(middle[:2])), 1e-9)
@@ -162,12 +163,11 @@ def eye(
     eyes = np.column_stack([np.cos(rise)[:, None] * flat, np.sin(rise)])
     seen = np.maximum(eyes @ normals.T, 0).mean(axis=1)
     score = seen - 0.15 * np.abs(flat @ away) + 0.05 * (flat @ away) - 0.2 * (rise < 0)
-    if seen_past is not None:
-        vertex, points = seen_past
-        ways = points - surface.vertices[vertex]
+    for place, normal, points in seen_past:
+        ways = points - place
         along = ways @ eyes.T
         aside = (ways**2).sum(axis=1, keepdims=True) - along**2
-        score -= ((along > 0.1) & (aside < 0.06**2)).any(axis=0)
-        score -= eyes @ normals[vertex] < 0.1
+        hidden = ((along > 0.1) & (aside < 0.06**2)).any(axis=0) | (eyes @ normal < 0.1)
+        score -= hidden / len(seen_past)
     best: Array = eyes[np.argmax(score)]
     return best

@@ -22,7 +22,15 @@ from cellcolor.frontend.arm.kinematics import (
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.pictures.arm import BESIDE, body_mesh, draw_arm, grid, link_fills, surroundings
+from cellcolor.pictures.arm import (
+    BESIDE,
+    arm_points,
+    body_mesh,
+    draw_arm,
+    grid,
+    link_fills,
+    surroundings,
+)
 from cellcolor.pictures.mesh_picture import eye
 from cellcolor.pictures.picture import Layer, SpaceLines, Text
 from cellcolor.pictures.report_page.content import MotionReport
@@ -31,6 +39,7 @@ from cellcolor.pictures.viewer.data import layer_data, lines_data, packed, pictu
 
 _MOST_FRAMES = 4000
 _MOST_MARKS, _MOST_DOTS = 40, 12  # of faults, and of left-out places
+_STOPS = 20  # at which the part beside the tool is to be seen
 _CONTACT = "#00508F"
 
 
@@ -52,7 +61,7 @@ def report_data(report: MotionReport) -> dict[str, Any]:
     data = picture_data(modes, buttons) | {
         "lines": list(map(lines_data, lines)),
         "layers": list(map(layer_data, layers)),
-        "towards": eye(report.built.surface, BESIDE).tolist(),
+        "towards": eye(report.built.surface, BESIDE, _stops(report)).tolist(),
     }
     if report.trajectory is not None:
         faults = () if report.verdict is None else report.verdict.faults
@@ -60,6 +69,16 @@ def report_data(report: MotionReport) -> dict[str, Any]:
         data["marks"] = _marks(report.trajectory, faults, surface)
         data["motion"] = _motion(prepared, report.trajectory, faults, lift)
     return data
+
+
+def _stops(report: MotionReport) -> list[tuple[Array, Array, Array]]:
+    """The tip's place and normal at some moments in contact, and the arm's points there."""
+    moved, robot = report.trajectory, report.built.robot
+    if moved is None or not moved.contact.any():
+        return []
+    touching = np.flatnonzero(moved.contact)
+    some = touching[np.linspace(0, len(touching) - 1, _STOPS).astype(np.int64)]
+    return [(moved.points[k], moved.normals[k], arm_points(robot, moved.joints[k])) for k in some]
 
 
 def _still(report: MotionReport) -> list[Layer]:
