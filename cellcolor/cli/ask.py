@@ -331,7 +331,7 @@ def setups(
     _print(scene, [found.answer.to_document()], found, as_json)
     if output is not None:
         found.plot(output)
-    valid = True
+    valid = whole = True
     if folder is not None:
         late = "the time limit came before all motions were planned"
         with at_work(scene, "planning", late) as tell:
@@ -340,9 +340,13 @@ def setups(
             own = folder / f"set-up-{one.number}"
             plan.save(own)
             valid &= plan.verdict.valid
+            whole &= plan.complete
             if not as_json:
                 say(f"{own}: {plan.trajectory}; judge: {plan.verdict}")
-    return Exit.done_if(found.answer.proved) if valid else Exit.INVALID
+                for line in plan.lacking:
+                    say(f"  {line}")
+    proved = found.answer.proved and found.answer.complete and whole
+    return Exit.done_if(proved) if valid else Exit.INVALID
 
 
 def _places_in(file: Path) -> list[tuple[float, ...]]:

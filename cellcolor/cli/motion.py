@@ -44,10 +44,14 @@ _FAULTS = 5  # that plan prints
 _PATTERN = click.option(
     "--pattern",
     metavar="NAME",
-    callback=one_of(pattern_names),
+    callback=lambda context, option, value: (
+        one_of(pattern_names)(context, option, value.partition(":")[0]) and value
+    ),
     default=DEFAULT_PATTERN,
     show_default=True,
-    help=f"Pattern of the tool paths: {', '.join(PATTERNS)}, or what another package registers.",
+    help=f"Pattern of the tool paths: {', '.join(PATTERNS)}, or what another package registers. "
+    "Rows of back-and-forth run back-and-forth:X,Y,Z along a vector, back-and-forth:around:X,Y,Z "
+    "around an axis, or back-and-forth:fewest-turns.",
 )
 
 
@@ -286,13 +290,16 @@ def plan(
     say(f"wrote {count(len(written), 'file')} to {output}: look at {output / 'report.html'}")
     if set(verdict.fault_counts) - {"unplanned"}:
         return Exit.INVALID
-    return Exit.done_if(verdict.valid and planned.solution.status == "optimal")
+    whole = verdict.valid and planned.solution.status == "optimal" and planned.complete
+    return Exit.done_if(whole)
 
 
 def _unfinished(scene: Path, folder: Path, unfinished: UnfinishedPlan) -> Exit:
     """Write what there is when the time limit came, and say what is missing."""
     _warn(scene, unfinished.subject)
     complain(f"{scene}: not planned to the end: {unfinished.missing}")
+    for line in unfinished.unanswered:
+        complain(f"{scene}: {line}")
     try:
         written = unfinished.save(folder)
     except InputError as error:

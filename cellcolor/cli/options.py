@@ -240,7 +240,11 @@ _MOTION = {
     "spacing_m": "Between neighboring passes, m.",
     "overlap_m": "Of neighboring segments, m; none without.",
     "speed_m_per_s": "Of the tool on the surface, m/s; slower where joints limit it.",
+    "lead_m": "Straight on before and after each stroke, of a tool that stands off, m.",
     "approach_speed_m_per_s": "Of the tool within 10 mm of contact, m/s; as in contact without.",
+    "transfer_speed_m_per_s": "Of the tool between strokes at most, m/s.",
+    "even_feed": "Slow each stroke down as a whole to a feed that it can keep.",
+    "least_feed": "A fault below this share of the speed, 0 to 1; none without.",
     "joint_velocities_rad_per_s": "Lower limits than the URDF's, rad/s (m/s for sliding joints).",
     "joint_accelerations_rad_per_s2": "A URDF has none; rad/s² (m/s² for sliding joints).",
     "joint_jerks_rad_per_s3": "Judged, not planned; rad/s³ (m/s³ for sliding joints).",
@@ -254,6 +258,10 @@ _MOTION = {
 def motion_options(command: Command) -> Command:
     """An option for each key of a setup's table ``[motion]``; those left out are None."""
     for key, meaning in reversed(_MOTION.items()):
+        if key == "even_feed":
+            flag = click.option("--even-feed", is_flag=True, default=None, help=meaning)
+            command = flag(command)
+            continue
         home = key == "home_rad"
         several = home or key.startswith("joint")
         numbers = _Numbers("must be numbers N,N,…", finite=True, word="free" if home else None)

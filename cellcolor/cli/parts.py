@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,25 @@ from cellcolor.files.writing import FileKind, Output, check_output, write
 
 _PART = click.argument("part", metavar="PART.(stl|obj|ply)", type=PATH)
 _JSON = json_option("One JSON object.")
+
+
+class FixedJoint(click.ParamType):  # type: ignore[type-arg]
+    """``rail_joint=0.4``: a joint and its position."""
+
+    name = "JOINT=POSITION"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, float]:
+        """Split at the last sign of equality."""
+        joint, _, position = str(value).rpartition("=")
+        try:
+            at = float(position)
+        except ValueError:
+            at = math.nan
+        if not joint or not math.isfinite(at):
+            self.fail(f"{value!r} is not JOINT=POSITION, as rail_joint=0.4", param, ctx)
+        return joint, at
 
 
 @cellcolor.command()
@@ -134,19 +154,40 @@ def repair(
 )
 @click.option("--tip-link", metavar="LINK", default="tip", show_default=True, help="Of the tool.")
 @UNIT
+@click.option(
+    "--outside",
+    type=click.Choice(["toward", "away", "flip"]),
+    help="The side to cover: towards the robot, away from it, or the other one than the faces of "
+    "an open part have.  [default: as the faces are wound; of a shell, the outer one]",
+)
+@click.option(
+    "--cover",
+    type=click.Choice(["largest", "all"]),
+    help="The largest piece between sharp edges, or all.  [default: one side of a shell, all of "
+    "other parts]",
+)
+@click.option(
+    "--fix",
+    type=FixedJoint(),
+    multiple=True,
+    help="Where a joint stands still, rad, or m of a rail. May be given several times.  [default: "
+    "rails and joints beside the chain at 0]",
+)
 @TIME_LIMIT
-def new(part: Path, arm: Path, output: Path, **wanted: Any) -> Exit:
+def new(
+    part: Path, arm: Path, output: Path, fix: tuple[tuple[str, float], ...], **wanted: Any
+) -> Exit:
     """Begin with a part and an arm: write a scene and a setup, ready to plan.
 
     The arm has six turning joints. Its family and flange, links that always overlap, a place where
     most of the part can be reached and a free home position are found out, and every key is
-    explained.
+    explained. What was assumed is printed.
     """
     from cellcolor.door.starting import new as begin
 
     late = "the time limit came first; nothing is written"
     with at_work(part, "beginning", late) as tell:
-        made = begin(part, arm, output, progress=tell, **wanted)
+        made = begin(part, arm, output, fix=dict(fix), progress=tell, **wanted)
     INTERRUPTS.check()
     say(f"wrote {made.scene} and its setup: {made.reachable_share:.0%} of the part can be reached")
     for note in made.notes:

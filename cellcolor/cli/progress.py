@@ -1,8 +1,9 @@
-"""Who does long work, and how far it is: on standard error, only where somebody watches."""
+"""Who does long work, and how far it is, on standard error."""
 
 from __future__ import annotations
 
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -18,15 +19,14 @@ if TYPE_CHECKING:
     from cellcolor.lab.workers import Workers
     from cellcolor.solvers.interface import OnProgress
 
+_MINUTE = 60.0  # s
+
 
 @contextmanager
-def progress_of(file: Path) -> Iterator[OnProgress | None]:
-    """A line with the time spent, the best division and the bound; None without a terminal."""
+def progress_of(file: Path) -> Iterator[OnProgress]:
+    """A line with the time spent, the best division and the bound."""
     name = shown(file.name)
     with _line(f"{name}: solving") as show:
-        if show is None:
-            yield None
-            return
 
         def report(segments: int | None, lower_bound: int) -> None:
             best = "no division yet" if segments is None else f"best {segments}"
@@ -36,19 +36,16 @@ def progress_of(file: Path) -> Iterator[OnProgress | None]:
 
 
 @contextmanager
-def scheme_progress_of(file: Path) -> Iterator[Callable[[int], None] | None]:
-    """A line with the time spent and the schemes found; None without a terminal."""
+def scheme_progress_of(file: Path) -> Iterator[Callable[[int], None]]:
+    """A line with the time spent and the schemes found."""
     name = shown(file.name)
     with _line(f"{name}: looking for schemes") as show:
-        if show is None:
-            yield None
-            return
         yield lambda found: show(f"{name}: {count(found, 'scheme')} so far")
 
 
 @contextmanager
 def stages_of(file: Path, work: str) -> Iterator[Callable[[str], None]]:
-    """A line with the time spent and what is being done, if there is a terminal.
+    """A line with the time spent and what is being done.
 
     Libraries that catch everything can swallow a signal; it is raised at the next stage.
     """
@@ -57,8 +54,7 @@ def stages_of(file: Path, work: str) -> Iterator[Callable[[str], None]]:
 
         def report(stage: str) -> None:
             INTERRUPTS.check()
-            if show is not None:
-                show(f"{name}: {stage}")
+            show(f"{name}: {stage}")
 
         yield report
 
@@ -83,10 +79,11 @@ def at_work(file: Path, work: str, late: str) -> Iterator[Callable[[str], None]]
 
 
 @contextmanager
-def _line(text: str) -> Iterator[Callable[[str], None] | None]:
-    """A line that can be replaced; None without a terminal."""
+def _line(text: str) -> Iterator[Callable[[str], None]]:
+    """A line that can be replaced; without a terminal a line each minute that work takes."""
     if not sys.stderr.isatty():
-        yield None
+        with _each_minute(text) as show:
+            yield show
         return
     from rich.console import Console
     from rich.progress import Progress as Display
@@ -96,6 +93,30 @@ def _line(text: str) -> Iterator[Callable[[str], None] | None]:
     with Display(*columns, console=Console(stderr=True), transient=True) as display:
         task = display.add_task(text, total=None)
         yield lambda text: display.update(task, description=text)
+
+
+@contextmanager
+def _each_minute(text: str) -> Iterator[Callable[[str], None]]:
+    """What is being done, on standard error, where no line can be replaced."""
+    latest, ended = text, threading.Event()
+
+    def show(text: str) -> None:
+        nonlocal latest
+        latest = text
+
+    def tell() -> None:
+        minutes = 0
+        while not ended.wait(_MINUTE):
+            minutes += 1
+            print(f"{latest}, {count(minutes, 'minute')} so far", file=sys.stderr, flush=True)
+
+    teller = threading.Thread(target=tell, daemon=True)
+    teller.start()
+    try:
+        yield show
+    finally:
+        ended.set()
+        teller.join()
 
 
 @contextmanager

@@ -112,5 +112,5 @@ def say_trajectory(name: str, verdict: TrajectoryVerdict) -> None:
         say(f"  fewest lift-offs on this surface, proved: {verdict.minimum_lift_offs}; {extra}")
     if verdict.covered is not None:
         say(f"  {verdict.covered}")
-    for note in verdict.notes:
-        say(f"  {note}")
+    for line in (*verdict.feed_lines, *verdict.notes):
+        say(f"  {line}")

@@ -86,8 +86,8 @@ def _refusal(twice: list[tuple[int, int]]) -> str:
     named = ", ".join(map(str, vertices[:MANY])) + (", …" if len(vertices) > MANY else "")
     return (
         f"one color has two configurations of a vertex (vertices {named}): matches lead from one "
-        "to the other around a way of mesh edges; say which of them are wrong (linked), or have "
-        "the weakest cut (conflicts='cut')"
+        "to the other around a way of mesh edges; mesh finer, or say what is linked and lower "
+        "max_step, so that you are asked, or have the weakest cut (conflicts='cut')"
     )
 
 

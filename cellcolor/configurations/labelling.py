@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +14,14 @@ from numpy.typing import ArrayLike
 
 from cellcolor.arrays import Array, Index
 from cellcolor.configurations.components import MANY, components_of
-from cellcolor.configurations.matching import DoubtfulPair, Linked, Matching, stays_within
+from cellcolor.configurations.matching import (
+    DoubtfulPair,
+    Linked,
+    Matching,
+    farthest,
+    stays_within,
+)
+from cellcolor.data.joint_plan import JointPlan
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
@@ -25,6 +33,17 @@ MAX_STEP = pi / 4
 FAR = 10.0
 """A part that is as many times as large as the arm's reach is taken to be in millimetres."""
 
+MOST_TURNS = 10
+"""More full circles than this are taken to be an angle in degrees."""
+
+TOLERANCE = 1e-3
+"""rad or m. A configuration of a plan that is no farther from one of the vertex is that one."""
+
+SAME = 1e-4
+"""rad or m. Configurations of a vertex that are no farther apart are one, found twice."""
+
+_AT_ONCE = 1_000_000  # pairs of configurations
+
 Conflicts = Literal["refuse", "cut"]
 
 
@@ -34,6 +53,9 @@ class Labelling:
 
     Attributes:
         surface: its colors are the components of configurations that belong together.
+        joints: (n, s, joints) the configurations of each vertex in the order given, rad or m; NaN
+            where there are fewer.
+        periods: (joints,) after which each joint comes back.
         color_of: for each vertex the color of each of its configurations, in the order given; -1
             for one outside the joint limits.
         doubtful: the pairs of configurations of which it is not clear whether they belong together.
@@ -43,6 +65,8 @@ class Labelling:
     """
 
     surface: LabelledSurface
+    joints: Array
+    periods: Array
     color_of: tuple[Index, ...]
     doubtful: tuple[DoubtfulPair, ...]
     edges: int
@@ -58,6 +82,47 @@ class Labelling:
     def doubtful_share(self) -> float:
         """The share of mesh edges with a doubtful pair."""
         return len(self.doubtful_edges) / max(1, self.edges)
+
+    def colors_of(self, plan: JointPlan, tolerance: float = TOLERANCE) -> tuple[int | None, ...]:
+        """The colors that a plan in joint angles shows, for ``cellcolor.judge``.
+
+        Neighbors in one color without a crack between them are one motion, so the judge counts the
+        lift-offs of the plan, and finds vertices that it leaves out.
+
+        Args:
+            plan: a configuration for each vertex, in rad or m.
+            tolerance: how far a joint may be from the vertex's own configuration, rad or m.
+
+        Returns:
+            For each vertex the color of the configuration that is nearest; None without contact.
+
+        Raises:
+            InputError: a configuration is none of its vertex, or outside the joint limits; names
+                the vertex.
+        """
+        vertices, _, joints = self.joints.shape
+        if plan.joints.shape != (vertices, joints):
+            message = f"has shape {plan.joints.shape}, must be ({vertices}, {joints})"
+            raise InputError(None, "joints", message)
+        off = farthest(plan.joints[:, None], self.joints, self.periods)
+        off[np.isnan(off)] = np.inf
+        colors: list[int | None] = []
+        for vertex, own in enumerate(off):
+            if np.isnan(plan.joints[vertex, 0]):
+                colors.append(None)
+                continue
+            nearest = int(np.argmin(own)) if len(own) else -1
+            if not own.min(initial=np.inf) <= tolerance:
+                place = ", ".join(f"{x:.3f}" for x in self.surface.vertices[vertex])
+                message = f"is no configuration of vertex {vertex}, at ({place}) m"
+                if np.isfinite(own.min(initial=np.inf)):
+                    message += f": the nearest is {own.min():.3g} away"
+                raise InputError(None, f"joints[{vertex}]", message)
+            color = int(self.color_of[vertex][nearest])
+            if color < 0:
+                raise InputError(None, f"joints[{vertex}]", "is outside the joint limits")
+            colors.append(color)
+        return tuple(colors)
 
     def __str__(self) -> str:
         lines = [str(self.surface)]
@@ -107,10 +172,9 @@ def from_configurations(
         vertices: (n, 3) in m.
         faces: (m, 3), counter-clockwise seen from outside.
         configurations: for each vertex an array (k, joints) in rad or m, in any order, any number;
-            none where the arm does not reach.
+            none where the arm does not reach. One that is there twice counts once.
         names: for each vertex the name of each of its configurations, such as "elbow up", each
-        once.
-            Only configurations of one name are matched. None: only distance tells them apart.
+            once. Only configurations of one name are matched. None: only distance tells them apart.
         limits: (2, joints), the lower and the upper end of each joint's range. Configurations
             outside are left out, and motions that leave the range are no match. None: no limits.
         periods: after which a joint comes back, for all joints or for each; ``inf`` for a joint
@@ -143,6 +207,7 @@ def from_configurations(
     if not (circles > 0).all():
         raise InputError(None, "periods", "must be above 0")
     _check_size(bare, reach_m)
+    _check_angles(joints, circles)
     branch = _branches(names, sizes, joints.shape[1])
     span = None if limits is None else _limits(limits, joints.shape[2])
     there = np.asarray(np.isfinite(joints).all(axis=2))
@@ -150,9 +215,12 @@ def from_configurations(
     if span is not None:
         inside = there & stays_within(span, joints, np.zeros_like(joints), circles)
         outside = int((there & ~inside).sum())
-        there, joints = inside, np.where(inside[:, :, None], joints, np.nan)
+        there = inside
+    first = _first_of_same(joints, branch, circles)
+    there &= first == np.arange(joints.shape[1])
+    usable = np.where(there[:, :, None], joints, np.nan)
     edges = np.asarray(bare.mesh.edges)
-    matching = Matching(joints, branch, circles, max_step, span, linked)
+    matching = Matching(usable, branch, circles, max_step, span, linked)
     found = matching.along(edges, deadline)
     colors = components_of(there, edges, found.pairs, found.strength, cut=conflicts == "cut")
     kept = np.delete(found.pairs, colors.cut, axis=0)
@@ -165,8 +233,11 @@ def from_configurations(
         _cracks(edges, colors.color, kept),
         _meta(found.doubtful),
     )
-    of_vertex = tuple(own[:size] for own, size in zip(colors.color, sizes, strict=True))
-    return Labelling(surface, of_vertex, found.doubtful, len(edges), len(colors.cut), outside)
+    color = np.take_along_axis(colors.color, first, axis=1)
+    of_vertex = tuple(own[:size] for own, size in zip(color, sizes, strict=True))
+    return Labelling(
+        surface, joints, circles, of_vertex, found.doubtful, len(edges), len(colors.cut), outside
+    )
 
 
 def _table(configurations: Sequence[ArrayLike]) -> tuple[Array, list[int]]:
@@ -235,6 +306,28 @@ def _check_size(surface: LabelledSurface, reach_m: float | None) -> None:
         raise InputError(None, "vertices", message)
 
 
+def _check_angles(joints: Array, periods: Array) -> None:
+    far = np.abs(joints) > MOST_TURNS * periods
+    if far.any():
+        vertex, number, joint = np.argwhere(far)[0].tolist()
+        message = f"is {joints[vertex, number, joint]:g}: are the angles in degrees?"
+        raise InputError(None, f"configurations[{vertex}][{number}][{joint}]", message)
+
+
+def _first_of_same(joints: Array, branch: Index, periods: Array) -> Index:
+    """The first configuration (n, s) of the vertex that each one is the same as."""
+    slots = joints.shape[1]
+    found = np.tile(np.arange(slots), (len(joints), 1))
+    rows = max(1, _AT_ONCE // (slots * slots))
+    for first in range(0, len(joints), rows):
+        own, named = joints[first : first + rows], branch[first : first + rows]
+        same = farthest(own[:, :, None], own[:, None], periods) <= SAME
+        same &= named[:, :, None] == named[:, None]
+        same |= np.eye(slots, dtype=bool)
+        found[first : first + rows] = same.argmax(axis=2)
+    return found
+
+
 def _branches(names: Sequence[Sequence[str]] | None, sizes: Sequence[int], slots: int) -> Index:
     """A number for the name of each configuration (n, s)."""
     found = np.zeros((len(sizes), slots), dtype=np.int64)
@@ -264,13 +357,14 @@ def _color_names(
     for own, found in zip(names, color, strict=True):
         base |= {number: each for each, number in zip(own, found.tolist(), strict=False)}
     base.pop(-1, None)
-    used = {name: 0 for name, times in Counter(base.values()).items() if times > 1}
+    times = Counter(base.values())
+    taken = {name for name, often in times.items() if often == 1}
     made = []
     for number in range(colors):
-        name = base[number]
-        if name in used:
-            used[name] += 1
-            name = f"{name} {used[name]}"
+        name, tries = base[number], itertools.count(1)
+        while times[base[number]] > 1 and (name == base[number] or name in taken):
+            name = f"{base[number]} {next(tries)}"
+        taken.add(name)
         made.append(name)
     return tuple(made)
 
@@ -278,11 +372,15 @@ def _color_names(
 def _cracks(edges: Index, color: Index, matched: Index) -> tuple[Crack, ...]:
     """Where both ends of a mesh edge have a color and its configurations are not matched."""
     i, j = edges.T
-    same = (color[i][:, :, None] == color[j][:, None]) & (color[i] >= 0)[:, :, None]
-    same[tuple(matched.T)] = False
     torn: dict[int, list[int]] = {}
-    for row, a, _ in np.argwhere(same).tolist():
-        torn.setdefault(row, []).append(int(color[i[row], a]))
+    rows = max(1, _AT_ONCE // color.shape[1] ** 2)
+    for first in range(0, len(edges), rows):
+        here, there = color[i[first : first + rows]], color[j[first : first + rows]]
+        same = (here[:, :, None] == there[:, None]) & (here >= 0)[:, :, None]
+        own = matched[(first <= matched[:, 0]) & (matched[:, 0] < first + rows)]
+        same[own[:, 0] - first, own[:, 1], own[:, 2]] = False
+        for row, a, _ in np.argwhere(same).tolist():
+            torn.setdefault(first + row, []).append(int(here[row, a]))
     return tuple(
         Crack(int(i[row]), int(j[row]), tuple(sorted(own))) for row, own in sorted(torn.items())
     )

@@ -32,6 +32,7 @@ FaultKind = Literal[
     "lift-offs",
     "uncovered",
     "repeated",
+    "feed",
 ]
 """What can be wrong; docs/judging-trajectories.md says what each one means."""
 
@@ -121,6 +122,52 @@ class CoveredArea(Value):
         )
 
 
+@dataclass(frozen=True, slots=True)
+class StrokeFeed(Value):
+    """How steadily the tool moves along a stroke.
+
+    Attributes:
+        segment: of the painting.
+        time: when the stroke begins, s.
+        seconds: how long it takes.
+        asked_m_per_s: the setup's ``speed_m_per_s``.
+        mean_m_per_s: length by time.
+        lowest_m_per_s: the lowest mean over a stretch of ``window_m``, without the first and the
+            last such stretch, in which the tool comes from rest and goes to rest.
+        window_m: the tool's footprint, m.
+        slow_share: share of the time in which the tool is slower than 90 % of what is asked.
+        joint: that slows it down for the longest time; None if no joint is near a limit.
+        limited_by: which limit of that joint, ``velocity`` or ``acceleration``.
+    """
+
+    segment: int
+    time: float
+    seconds: float
+    asked_m_per_s: float
+    mean_m_per_s: float
+    lowest_m_per_s: float
+    window_m: float
+    slow_share: float
+    joint: str | None
+    limited_by: Literal["velocity", "acceleration"] | None
+
+    @property
+    def why(self) -> str:
+        """What slows the stroke down, as the end of a sentence."""
+        if not self.slow_share:
+            return ""
+        if self.joint is None:
+            return ", no joint is near a limit"
+        return f", because of the {self.limited_by} of {self.joint}"
+
+    def __str__(self) -> str:
+        return (
+            f"mean feed {self.mean_m_per_s:.3g} m/s of {self.asked_m_per_s:.3g}, lowest "
+            f"{self.lowest_m_per_s:.3g} over {1e3 * self.window_m:g} mm, "
+            f"{self.slow_share:.0%} of the time below 90 %{self.why}"
+        )
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class TrajectoryVerdict(Document):
     """What an independent judge finds in a trajectory.
@@ -141,6 +188,7 @@ class TrajectoryVerdict(Document):
         faults: the first of each kind, at most a hundred of a kind.
         covered: what it covers; None where that is not judged.
         notes: what was not judged, and why, a sentence each.
+        feeds: of each stroke; empty without times, or where the setup asks for no feed.
     """
 
     FORMAT = "cellcolor/trajectory-verdict"
@@ -159,6 +207,12 @@ class TrajectoryVerdict(Document):
     faults: tuple[Fault, ...]
     covered: CoveredArea | None
     notes: tuple[str, ...]
+    feeds: tuple[StrokeFeed, ...] = ()
+
+    @property
+    def feed_lines(self) -> tuple[str, ...]:
+        """What is said of the feed of each stroke."""
+        return tuple(f"stroke {number}: {feed}" for number, feed in enumerate(self.feeds))
 
     @property
     def valid(self) -> bool:
@@ -194,7 +248,7 @@ class TrajectoryVerdict(Document):
         return verdict
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class _VerdictFile(TrajectoryVerdict):
     """The file's members, and ``file``, which ``cellcolor check`` adds to what it prints."""
 

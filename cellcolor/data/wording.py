@@ -49,3 +49,8 @@ def looks_like_millimeters(*lengths: float) -> str:
 def looks_like_degrees(angle: float) -> str:
     """``180 looks like degrees: 3.1416 rad?``, of a number given in radians."""
     return f"{angle:g} looks like degrees: {math.radians(angle):.5g} rad?"
+
+
+def beyond_turns(angle: float, turns: int) -> bool:
+    """Whether an angle in rad is more than so many full circles: then it must be degrees."""
+    return abs(angle) > 2 * math.pi * turns + 0.01  # 6.2832 is a full circle as well

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from cellcolor.data.instance import Instance, SurfaceReference
 from cellcolor.data.solution import Solution
@@ -17,13 +19,15 @@ from cellcolor.door.plan_files import SIDE, SURFACE, save
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
-from cellcolor.exports.registry import exported
+from cellcolor.exports.registry import PROGRAM, exported, programs_of, why_not
 from cellcolor.files.paths import path_of
 from cellcolor.painting.paint import Painted
 
 if TYPE_CHECKING:
     from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+    from cellcolor.exports.interface import ArmAxes, PlannedMotion
     from cellcolor.frontend import BuildReport, BuildResult
+    from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.pictures.report_page.content import AnsweredScene, MotionReport
     from cellcolor.tool_paths.measures import PathMeasures
 
@@ -40,6 +44,7 @@ class UnfinishedPlan:
         painted: the segments on the surface, if they were painted.
         paths: where the tool goes, if that was laid out.
         measures: of each of these paths.
+        unanswered: the questions that have no answer, or a part of one, each with the reason.
     """
 
     subject: Subject
@@ -47,6 +52,7 @@ class UnfinishedPlan:
     painted: Painted | None
     paths: ToolPaths | None
     measures: tuple[PathMeasures, ...]
+    unanswered: tuple[str, ...] = field(default=(), kw_only=True)
 
     @property
     def built(self) -> BuildResult:
@@ -91,6 +97,7 @@ class UnfinishedPlan:
             verdict=None,
             paths=self.paths,
             missing=self.missing,
+            lacking=self.unanswered,
         )
 
     def page(self) -> bytes:
@@ -178,31 +185,52 @@ class PlannedScene(UnfinishedPlan):
             verdict=self.verdict,
             paths=None,
             answered=self.answered,
+            programs=programs_of(self._motion()),
+            lacking=self.lacking,
         )
 
-    def _files(self, export_step_s: float | None = None) -> dict[str, bytes]:
-        from cellcolor.exports.interface import ArmAxes, PlannedMotion
+    @property
+    def lacking(self) -> tuple[str, ...]:
+        """What was asked for, or is usual, and is not there, a line each with the reason."""
+        refused = why_not(self._motion())
+        return (*self.unanswered, *(f"{name}: not written: {why}" for name, why in refused.items()))
+
+    @property
+    def complete(self) -> bool:
+        """Whether all that was asked for is there: answers, and the program of a controller."""
+        asked = self.built.prepared.setup.controller is not None
+        return not self.unanswered and not (asked and PROGRAM in why_not(self._motion()))
+
+    def _motion(self, export_step_s: float | None = None) -> PlannedMotion:
+        """What exports are made of."""
+        from cellcolor.exports.interface import PlannedMotion
         from cellcolor.pictures.surface_pictures import by_segment
 
         painted, trajectory = self.painted, self.trajectory
         fills = tuple(own.rgb for own in by_segment(painted).classes if own.number is not None)
-        arm = self.built.robot
-        axes = ArmAxes.of(arm.joint_names, arm.placement, arm.axis, bool(arm.slides.any()))
-        motion = PlannedMotion(
+        prepared = self.built.prepared
+        task = prepared.setup.task
+        return PlannedMotion(
             surface=painted.surface,
             segment_of=painted.segment_of,
             fills=fills,
             paths=self.paths,
             trajectory=trajectory,
-            axes=axes,
+            axes=axes_of(prepared),
             step_s=export_step_s,
-            force_n=self.built.prepared.setup.task.normal_force_n,
+            # A tool that stands off presses on nothing.
+            force_n=0.0 if task.stand_off_m else task.normal_force_n,
+            controller=prepared.setup.controller,
+            led=bool(prepared.setup.motion and prepared.setup.motion.lead_m),
+            part=prepared.scene.placement.matrix,
         )
+
+    def _files(self, export_step_s: float | None = None) -> dict[str, bytes]:
         return {
             **super()._files(),
-            "trajectory.json": trajectory.to_json().encode(),
+            "trajectory.json": self.trajectory.to_json().encode(),
             "verdict.json": self.verdict.to_json().encode(),
-            **exported(motion),
+            **exported(self._motion(export_step_s)),
         }
 
     def __str__(self) -> str:
@@ -221,7 +249,9 @@ class PlannedScene(UnfinishedPlan):
             )
         covered = self.verdict.covered
         said.append(f"judge: {self.verdict}" + ("" if covered is None else f"; {covered}"))
+        said += [f"  {line}" for line in self.verdict.feed_lines]
         said += [str(answer) for answer in (self.answered.answers if self.answered else ())]
+        said += self.lacking
         coverage = self.instance.coverage
         if coverage is not None and coverage.given_up:
             left_out = "slivers" if self.built.left_alone is None else "left out on purpose"
@@ -230,6 +260,27 @@ class PlannedScene(UnfinishedPlan):
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.trajectory}>"
+
+
+def axes_of(prepared: PreparedScene) -> ArmAxes:
+    """The arm's axes, seen from the base of its controller.
+
+    Raises:
+        InputError: the arm has no link that the setup names as the base.
+    """
+    from cellcolor.exports.interface import ArmAxes
+
+    setup = prepared.setup
+    base = None if setup.controller is None else setup.controller.base_link
+    given = None if setup.motion is None else setup.motion.joint_velocities_rad_per_s
+    try:
+        axes = ArmAxes.of(prepared.robot, setup.robot.flange_link, base)
+        unknown = np.isnan(axes.speeds) & (given is not None)
+        return replace(axes, speeds=np.where(unknown, given or np.nan, axes.speeds))
+    except KeyError as error:
+        message = f"no link {base!r} stands still before the first joint"
+        file = None if setup.file is None else str(setup.file)
+        raise InputError(file, "controller.base_link", message) from error
 
 
 class PlanOutOfTime(OutOfTime):

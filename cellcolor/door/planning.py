@@ -15,7 +15,13 @@ from cellcolor.door.asking import explain, tradeoff
 from cellcolor.door.extras import require_motion
 from cellcolor.door.leaving_out import Wanted, rest_of
 from cellcolor.door.placing import place
-from cellcolor.door.planned import NothingCovered, PlannedScene, PlanOutOfTime, UnfinishedPlan
+from cellcolor.door.planned import (
+    NothingCovered,
+    PlannedScene,
+    PlanOutOfTime,
+    UnfinishedPlan,
+    axes_of,
+)
 from cellcolor.door.result import Result
 from cellcolor.door.solving import solve
 from cellcolor.door.subject import Subject, scene_or_file
@@ -100,6 +106,7 @@ def plan(
         prepared = prepare(_with_motion(given, motion), deadline)
         # What is wrong with the motion is refused before the long work begins.
         home_of(prepared, motion_of(prepared))
+        axes_of(prepared)
     with clock.timed("colors"):
         whole = _built(prepared, given.file, StageClock(deadline, progress))
     run = _Run(whole, pattern or DEFAULT_PATTERN, clock, progress)
@@ -107,11 +114,13 @@ def plan(
         best = run.best_of(*run.divided(wanted))
         verdict = run.judged(best)
     except OutOfTime as error:
-        raise PlanOutOfTime(run.so_far) from error
-    answered = None
+        unasked = tuple(f"{name}: not asked, the time limit came first" for name in ask)
+        raise PlanOutOfTime(replace(run.so_far, unanswered=unasked)) from error
+    answered: AnsweredScene | None = None
+    unanswered: tuple[str, ...] = ()
     if ask:
         with clock.timed("questions"):
-            answered = _answered(ask, whole, deadline, progress)
+            answered, unanswered = _answered(ask, whole, deadline, progress)
     return PlannedScene(
         best.subject,
         best.result,
@@ -122,6 +131,7 @@ def plan(
         verdict,
         clock.seconds,
         answered,
+        unanswered=unanswered,
     )
 
 
@@ -289,28 +299,38 @@ def _answered(
     subject: Subject,
     deadline: Deadline,
     progress: Callable[[str], None] | None = None,
-) -> AnsweredScene:
-    """The answers to the questions asked of a built scene, as far as there is time."""
+) -> tuple[AnsweredScene, tuple[str, ...]]:
+    """The answers to the questions asked of a built scene, and why others have none or a part."""
     from cellcolor.pictures.report_page.content import AnsweredScene
     from cellcolor.questions.setting_up import candidates_of, plan_of
 
     scene = subject.build().scene
     (x, y, z), (roll, pitch, yaw) = scene.placement.position_m, scene.placement.rpy_rad
+    around: dict[str, Any] = {"x": (x - _MOVED, x + _MOVED), "y": (y - _MOVED, y + _MOVED)}
+    turned = [(x, y, z, roll, pitch, yaw + turns * pi / 2) for turns in (1, 2, 3)]
     given: dict[str, Any] = {"time_limit": deadline, "progress": progress}
+
+    def set_ups() -> Answers:
+        found = candidates_of([scene], turned, deadline.share(_FOR_BUILDING), progress)
+        return plan_of(found, 1.0, None, Options(deadline=deadline), progress)
+
+    ways: dict[str, Callable[[], Answers]] = {
+        "tradeoff": lambda: tradeoff(subject, **given),
+        "explain": lambda: explain(scene, **given),
+        "place": lambda: place(scene, **around, points=_PLACEMENTS, **given),
+        "setups": set_ups,
+    }
     answers: list[Answers] = []
-    try:
-        if "tradeoff" in names:
-            answers.append(tradeoff(subject, **given))
-        if "explain" in names:
-            answers.append(explain(scene, **given))
-        if "place" in names:
-            around: dict[str, Any] = {"x": (x - _MOVED, x + _MOVED), "y": (y - _MOVED, y + _MOVED)}
-            answers.append(place(scene, **around, points=_PLACEMENTS, **given))
-        if "setups" in names:
-            turned = [(x, y, z, roll, pitch, yaw + turns * pi / 2) for turns in (1, 2, 3)]
-            found = candidates_of([scene], turned, deadline.share(_FOR_BUILDING), progress)
-            options = Options(deadline=deadline)
-            answers.append(plan_of(found, 1.0, None, options, progress))
-    except OutOfTime:
-        pass  # the page is about the plan, and has what there is
-    return AnsweredScene(subject.surface, subject.decomposition, tuple(answers))
+    unanswered: list[str] = []
+    for name in (name for name in _QUESTIONS if name in names):
+        try:
+            answers.append(ways[name]())
+        except OutOfTime:
+            unanswered.append(f"{name}: not answered, the time limit came first")
+            continue
+        except InputError as error:  # the motion is planned and judged all the same
+            unanswered.append(f"{name}: not answered: {error}")
+            continue
+        if not answers[-1].complete:
+            unanswered.append(f"{name}: answered in part, the time limit came first")
+    return AnsweredScene(subject.surface, subject.decomposition, tuple(answers)), tuple(unanswered)

@@ -7,8 +7,8 @@ import os
 import re
 import tomllib
 from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from itertools import product
 from os import PathLike
 from pathlib import Path
@@ -20,17 +20,24 @@ import numpy as np
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.extras import require_motion
 from cellcolor.door.parts import inspect
+from cellcolor.door.starting_choices import (
+    CoverChoice,
+    Outside,
+    fixed_line,
+    fixed_of,
+    home_of,
+    is_weightless,
+    last_link,
+    mount_line,
+    side_of,
+)
 from cellcolor.door.starting_texts import MARK, SCENE, SETUP, TOOL
 from cellcolor.errors import InputError, naming
 from cellcolor.files.paths import path_of
 from cellcolor.files.writing import FileKind, Output, check_output, is_folder_or_nothing, write
 
 if TYPE_CHECKING:
-    import xml.etree.ElementTree as ET
-
-    from cellcolor.arrays import Array
     from cellcolor.frontend.arm.robot import Robot
-    from cellcolor.frontend.arm.urdf import Urdf
     from cellcolor.frontend.parts.inspection import Inspection
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.frontend.setup import Setup
@@ -39,8 +46,6 @@ _FLANGES = ("tool0", "flange", "ee_link", "wrist_3_link", "tool_flange")
 _FAMILIES = ("ur", "eaik", "offset-wrist")  # the second says most about an arm that fits none
 _NEEDED = ("pinocchio", "fcl", "igl", "trimesh", "scipy")
 _JOINTS, _ACCELERATION = 6, 5.0  # rad/s^2, which most arms of a meter can
-_ALONG = 1e-3  # rad; an axis so near to another one is along it
-_AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
 _JERK = 1000.0  # rad/s^3, an example
 _MOST_ASKED = 300  # vertices of the part, wherever it is tried
 _FARTHER, _HIGHER = (0.45, 0.6, 0.75), (0.02, 0.2, 0.4)
@@ -74,14 +79,18 @@ def new(
     tool: str | PathLike[str] | None = None,
     tip_link: str = "tip",
     unit: str | None = None,
+    outside: Outside | None = None,
+    cover: CoverChoice | None = None,
+    fix: Mapping[str, float] | None = None,
     time_limit: TimeLimit = None,
     progress: Callable[[str], None] | None = None,
 ) -> Started:
     """Write a scene and its setup, with every key explained, ready for ``cellcolor plan``.
 
-    The arm has six turning joints. The function finds its family, its flange and the links that
-    always overlap. It puts the part where most of it can be reached, of nine places in front of the
-    robot, and proposes a free home position.
+    The arm has six turning joints; rails and joints beside the chain stand still. The function
+    finds its family, its flange and the links that always overlap. It puts the part where most of
+    it can be reached, of nine places in front of the robot, and proposes a free home position over
+    it. What it assumed is in the notes.
 
     Args:
         part: a mesh file (STL, OBJ, PLY).
@@ -90,6 +99,11 @@ def new(
         tool: a URDF of the tool; None for a polisher of 100 mm, whose URDF is written as well.
         tip_link: of the tool.
         unit: ``m``, ``mm``, ``cm`` or ``in``, of the mesh; without it the likely one.
+        outside: of an open part, the side that faces ``toward`` the robot or ``away`` from it, or
+            ``flip``, the other one than its faces have; of a shell, the side that is covered.
+        cover: ``largest`` for the largest piece between sharp edges, ``all``; without it one side
+            of a shell, all of other parts.
+        fix: positions of joints that stand still, rad, or m of prismatic ones.
         time_limit: seconds, None for no limit.
         progress: told what is being done.
 
@@ -109,12 +123,13 @@ def new(
     tip = "tip" if tool is None else tip_link
 
     tell("the arm")
-    robot = arm_of(urdf, None if tool is None else path_of(tool), tip, place)
+    robot = arm_of(urdf, None if tool is None else path_of(tool), tip, place, fix or {})
     tell("the part")
-    part_keys = part_keys_of(mesh, place, inspect(mesh, unit=unit, time_limit=deadline))
+    looked = inspect(mesh, unit=unit, time_limit=deadline)
+    part_keys, side = part_keys_of(mesh, place, looked, outside, cover)
     tell("where the part can stand")
     best, share = best_place(robot, mesh, part_keys, deadline)
-    home = _home(best)
+    home, posture = home_of(best)
     robot.keys.update(_found(best, home))
     part_keys["position"] = json.dumps(list(best.scene.placement.position_m))
     content = {
@@ -124,9 +139,8 @@ def new(
     }
     place.mkdir(parents=True, exist_ok=True)
     write([Output(place / name, kinds[name], [content[name].encode()]) for name in names])
-    return Started(
-        place / "scene.toml", share, tuple(_notes(best, robot.touching, home, tool is None))
-    )
+    assumed = (f"unit {looked.unit}: {looked.unit_reason}", side, posture)
+    return Started(place / "scene.toml", share, (*assumed, *_notes(best, robot, tool is None)))
 
 
 @dataclass(frozen=True)
@@ -139,6 +153,8 @@ class FoundArm:
         keys: what is filled into the setup's text.
         reach: of the arm, m.
         touching: pairs of its links that overlap in every posture.
+        fixed: positions of joints that stand still, rad or m.
+        base_m: x and y of its first joint in the world.
     """
 
     urdf: Path
@@ -146,6 +162,8 @@ class FoundArm:
     keys: dict[str, str]
     reach: float = 0.0
     touching: tuple[tuple[str, str], ...] = ()
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    base_m: tuple[float, float] = (0.0, 0.0)
 
     @property
     def setup(self) -> Setup:
@@ -158,31 +176,40 @@ class FoundArm:
         return Setup(**table)
 
 
-def arm_of(urdf: Path, tool: Path | None, tip: str, folder: Path) -> FoundArm:
+def arm_of(
+    urdf: Path, tool: Path | None, tip: str, folder: Path, fix: Mapping[str, float]
+) -> FoundArm:
     """The arm with the first family that fits it; its setup will be in the folder.
 
     Raises:
         InputError: none does.
     """
+    from cellcolor.frontend.arm.assembly import fix_joints
+    from cellcolor.frontend.arm.kinematics import forward
     from cellcolor.frontend.arm.urdf import load_urdf
     from cellcolor.frontend.reach.always_touching import always_touching
     from cellcolor.frontend.reach.prepared_arm import prepare_arm
 
     arm = load_urdf(urdf)
-    flange = next((link for link in _FLANGES if link in arm.parent), None) or _last_link(arm.parent)
+    flange = next((link for link in _FLANGES if link in arm.parent), None) or last_link(arm.parent)
+    fixed = fixed_of(arm, flange, fix)
+    with naming(urdf):
+        arm = fix_joints(arm, fixed)
     chain = arm.chain(flange)
     moved = next((at for at, link in enumerate(chain) if arm.joint_above.get(link) in arm.kinds), 0)
     standing = [link for link in chain[: moved + 1] if link in arm.shapes]
+    weightless = bool(arm.weightless) or (tool is not None and is_weightless(load_urdf(tool)))
     keys = {
         "arm": urdf.name,
         "arm_urdf": json.dumps(_relative(urdf, folder)),
         "flange": json.dumps(flange),
-        "mount": _mount(arm, flange),
+        "mount": mount_line(arm, flange),
         "tool": json.dumps("tool.urdf" if tool is None else _relative(tool, folder)),
         "tip": json.dumps(tip),
         "standing": json.dumps(standing),
-        "force": "false" if arm.weightless else "true",
-        "why_force": "the URDF lacks masses or efforts" if arm.weightless else "true or false",
+        "fixed": fixed_line(fixed),
+        "force": "false" if weightless else "true",
+        "why_force": "a URDF lacks masses or efforts" if weightless else "true or false",
         "touching": "[]",
         "velocities": "",
         "accelerations": json.dumps([_ACCELERATION] * _JOINTS),
@@ -202,86 +229,45 @@ def arm_of(urdf: Path, tool: Path | None, tip: str, folder: Path) -> FoundArm:
             faults.append(error)
             continue
         touching = json.dumps([list(pair) for pair in pairs])
-        return replace(found, keys=found.keys | {"touching": touching}, reach=reach, touching=pairs)
-    raise faults[1] if faults[1].file else faults[1].in_file(str(urdf))
-
-
-def _mount(arm: Urdf, flange: str) -> str:
-    """The setup's line that turns the tool's z axis onto the last joint's, if it is not there.
-
-    Some vendors' flanges have their x axis along that of the joint.
-    """
-    from cellcolor.frontend.parts.placement import rpy_from_rotation
-
-    x, y, z = _last_axis(arm, flange)
-    along = np.hypot(x, y) < _ALONG
-    if along and z > 0:
-        return ""
-    # Turned about the axis across both.
-    cross = np.array([[0, 0, x], [0, 0, y], [-x, -y, 0]])
-    onto = np.diag([1, -1, -1]) if along else np.eye(3) + cross + cross @ cross / (1 + z)
-    angles = [round(angle, 9) + 0.0 for angle in rpy_from_rotation(onto)]
-    return f"mount_rpy_rad = {angles}   # turns the tool's z axis onto the last joint's\n"
-
-
-def _last_axis(arm: Urdf, flange: str) -> Array:
-    """The last axis (3,) before the flange, in its frame; outward with all joints at zero."""
-    from cellcolor.frontend.parts.placement import rotation_from_rpy
-
-    joints = {joint.get("name"): joint for joint in arm.xml.findall("joint")}
-    turn, out, link = np.eye(3), np.zeros(3), flange  # of the flange, seen from a link before it
-    axis: Array | None = None
-    while link in arm.parent:
-        joint = joints[arm.joint_above[link]]
-        if axis is None and arm.joint_above[link] in arm.kinds:
-            axis = _numbers(joint.find("axis"), "xyz", "1 0 0") @ turn
-            axis /= np.linalg.norm(axis)
-        if axis is not None and abs(ahead := axis @ (out @ turn)) > _AHEAD:
-            return np.asarray(axis * np.sign(ahead))
-        xyz, rpy = (_numbers(joint.find("origin"), key, "0 0 0") for key in ("xyz", "rpy"))
-        rotation = rotation_from_rpy(*rpy)
-        turn, out, link = rotation @ turn, xyz + rotation @ out, arm.parent[link]
-    return np.array([0.0, 0.0, 1.0]) if axis is None else axis
-
-
-def _numbers(element: ET.Element | None, key: str, usual: str) -> Array:
-    return np.array((usual if element is None else element.get(key, usual)).split(), dtype=float)
+        robot = prepared.robot
+        x, y, _ = forward(robot, np.zeros((1, robot.joints))).origin[0, 1].tolist()
+        keys = found.keys | {"touching": touching}
+        return FoundArm(urdf, tool, keys, reach, pairs, fixed, (x, y))
+    fault = faults[1] if faults[1].file else faults[1].in_file(str(urdf))
+    if "fixed_joints" in fault.message + (fault.field or ""):
+        raise InputError(fault.file, fault.field, f"{fault.message} (here: --fix JOINT=POSITION)")
+    raise fault
 
 
 def _relative(file: Path, folder: Path) -> str:
     return Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()
 
 
-def _last_link(parent: dict[str, str]) -> str:
-    """The link farthest from the root; of several the first."""
-    if not parent:
-        return ""
-
-    def depth(link: str) -> int:
-        count = 0
-        while link in parent:
-            link, count = parent[link], count + 1
-        return count
-
-    return max(parent, key=depth)
-
-
-def part_keys_of(mesh: Path, folder: Path, looked: Inspection) -> dict[str, str]:
-    """What is filled into the scene's text.
+def part_keys_of(
+    mesh: Path,
+    folder: Path,
+    looked: Inspection,
+    outside: Outside | None,
+    cover: CoverChoice | None,
+) -> tuple[dict[str, str], str]:
+    """What is filled into the scene's text, and which side is covered.
 
     Raises:
-        InputError: the mesh cannot be used, not even repaired.
+        InputError: the mesh cannot be used, not even repaired, or has no such side.
     """
-    from cellcolor.frontend.parts.mesh_file import UNITS
+    from cellcolor.frontend.parts.mesh_file import UNITS, load_mesh
 
     if looked.refusal_after_repair is not None:
         raise InputError(str(mesh), None, looked.refusal_after_repair)
-    return {
+    unit = UNITS[looked.unit]
+    side = side_of(load_mesh(mesh, unit, mend=bool(looked.repairs)), outside, cover)
+    keys = {
         "name": json.dumps(mesh.stem),
         "part": json.dumps(_relative(mesh, folder)),
-        "meters_per_unit": str(UNITS[looked.unit]),
+        "meters_per_unit": str(unit),
         "repair": "true" if looked.repairs else "false",
     }
+    return keys | side.keys, side.note
 
 
 def best_place(
@@ -309,7 +295,8 @@ def best_place(
     fault: InputError | None = None
     failed: Counter[str] = Counter()
     for far, raised in product(_FARTHER, _HIGHER):
-        position = far * arm.reach - middle[0], -middle[1], raised * arm.reach - low[2]
+        ahead, beside = arm.base_m[0] + far * arm.reach, arm.base_m[1]
+        position = ahead - middle[0], beside - middle[1], raised * arm.reach - low[2]
         try:
             place = Placement(position_m=(np.round(position, 3) + 0.0).tolist())
             if prepared is None:
@@ -335,23 +322,10 @@ def best_place(
         message = (
             "nothing of the part can be reached at any of nine places before the robot; most often "
             f"a posture fails by {failed.most_common(1)[0][0]!r}: does the part's outside face the "
-            "robot, and is its size one for this arm?"
+            "robot (--outside flip), and is its size one for this arm?"
         )
-        raise InputError(str(mesh), None, message)
+        raise InputError(str(mesh), None, "; ".join([message, *best[0].robot.warnings]))
     return best
-
-
-def _home(prepared: PreparedScene) -> list[float] | None:
-    """A free position near the middle of the joints' limits, rad."""
-    from cellcolor.motion.free_space import FreeSpace
-    from cellcolor.motion.home import free_near
-    from cellcolor.motion.limits import motion_of
-
-    robot = prepared.robot
-    lower = np.where(np.isfinite(robot.lower), robot.lower, -np.pi)
-    upper = np.where(np.isfinite(robot.upper), robot.upper, np.pi)
-    motion = motion_of(prepared)
-    return free_near(FreeSpace(prepared, motion.clearance_m), np.round((lower + upper) / 2, 2))
 
 
 def _found(prepared: PreparedScene, home: list[float] | None) -> dict[str, str]:
@@ -374,21 +348,18 @@ def _velocities(robot: Robot) -> str:
     return f"{'' if lacks else '# '}{line}  # {why}"
 
 
-def _notes(
-    prepared: PreparedScene,
-    touching: tuple[tuple[str, str], ...],
-    home: list[float] | None,
-    own_tool: bool,
-) -> Iterator[str]:
+def _notes(prepared: PreparedScene, arm: FoundArm, own_tool: bool) -> Iterator[str]:
+    from cellcolor.frontend.report import survey_of
+
+    for joint, position in arm.fixed.items():
+        yield f"{joint} stands still at {position:g} (--fix {joint}=POSITION for another one)"
     if own_tool:
         yield "tool.urdf is a polisher of 100 mm: put your tool's shape and length into it"
-    for first, second in touching:
+    for first, second in arm.touching:
         yield f"{first} and {second} overlap in every posture: setup.toml lets them touch"
     yield "setup.toml has accelerations of 5 rad/s²: take those of the arm's data sheet"
     if np.isnan(prepared.robot.velocity).any():
         yield "setup.toml has velocities of 1 rad/s, since the URDF has none"
     if not prepared.setup.constraints.force:
-        yield "torques are not tested, since the URDF lacks masses or efforts"
-    if home is None:
-        yield "no free home position was found: the motion may begin and end anywhere"
-    yield from prepared.notes
+        yield "torques are not tested, since a URDF lacks masses or efforts"
+    yield from survey_of(prepared).warnings + prepared.notes

@@ -32,7 +32,7 @@ flange_link = $flange               # where the tool's root link is fixed
 ${mount}tool_urdf = $tool
 tip_link = $tip                     # where the tool touches; its z axis goes into the part
 locked_joint_6_rad = 0.0            # the tool may turn about its axis: the last joint stands still
-may_touch_ground = $standing
+${fixed}may_touch_ground = $standing
 may_touch = $touching               # pairs of links that overlap in every posture
 # mesh_collision_of = { some_link = "exact" }   # a link's mesh itself instead of its convex hull
 
@@ -70,13 +70,20 @@ spacing_m = 0.01                    # between neighboring passes
 # overlap_m = 0.01                  # of neighboring segments, so that no seam is left
 speed_m_per_s = 0.05                # of the tool on the part
 approach_speed_m_per_s = 0.02       # of the tool within 10 mm of a touch
+# transfer_speed_m_per_s = 0.25     # of the tool between strokes
+# least_feed = 0.8                  # less than this share of the speed is a fault
 $velocities
 joint_accelerations_rad_per_s2 = $accelerations   # take the data sheet's
 # joint_jerks_rad_per_s3 = $jerks   # for the judge, if there is a limit
 retract_m = 0.05                    # along the normal, before moving on
 clearance_m = 0.005                 # to everything, between strokes
-# Where the arm begins and ends; free in this scene.
+# Where the arm begins and ends; free in this scene, over the part if there is room.
 $home
+
+# For programs (docs/formats/other-programs.md); an arm of Universal Robots needs no table.
+# [controller]
+# language = "rapid"                # urscript, rapid, krl or fanuc
+# signs = [1, 1, 1, 1, 1, 1]        # of its axes against the URDF's; there are offsets_deg too
 """
 )
 
@@ -92,7 +99,7 @@ file = $part
 meters_per_unit = $meters_per_unit              # 0.001 for a file in millimeters
 max_edge_m = 0.01                   # longer edges are halved: the tool's contact region
 repair = $repair
-
+$flip$cover
 # Put where most of the part was found to be reachable, of nine places before the robot.
 [placement]
 position_m = $position              # of the file's origin, from the robot's root link

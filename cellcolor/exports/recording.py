@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from importlib.util import find_spec
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -126,21 +127,31 @@ Field: TypeAlias = "str | NDArray[Any] | np.number[Any]"
 _ZERO, _NO = np.uint32(0), np.uint8(0)
 
 
+def check(planned: PlannedMotion) -> None:
+    """Refuse an arm of which there can be no recording.
+
+    Raises:
+        NotForThisArm: the package ``mcap`` is not installed, or the arm is not known.
+    """
+    if find_spec("mcap") is None:
+        raise NotForThisArm("it needs the package mcap")
+    if planned.axes is None or planned.axes.slides:
+        raise NotForThisArm("it needs an arm whose joints all turn")
+
+
 def recording(planned: PlannedMotion) -> bytes:
     """``/joint_states``, ``/tf`` (each joint's axis, the tool's tip) and ``/markers``.
 
     Transforms are in the frame ``world``. The surface and the strokes are markers, at the start.
 
     Raises:
-        NotForThisArm: the package ``mcap`` is not installed, or the arm is not known.
+        NotForThisArm: as of :func:`check`.
     """
-    try:
-        from mcap.well_known import MessageEncoding, Profile, SchemaEncoding
-        from mcap.writer import Writer
-    except ImportError as error:
-        raise NotForThisArm("a recording needs the package mcap") from error
-    if planned.axes is None or planned.axes.slides:
-        raise NotForThisArm("a recording needs an arm whose joints all turn")
+    check(planned)
+    assert planned.axes is not None
+    from mcap.well_known import MessageEncoding, Profile, SchemaEncoding
+    from mcap.writer import Writer
+
     stream = io.BytesIO()
     writer = Writer(stream)
     writer.start(Profile.ROS2)
@@ -195,16 +206,8 @@ def _cdr(*fields: Field) -> bytes:
 
 def _frames(axes: ArmAxes, joints: Array) -> list[tuple[Array, Array]]:
     """Where each axis is (k, 3) and how its link is turned (k, 4), for joints (k, n)."""
-    from scipy.spatial.transform import Rotation
-
-    turn, shift = Rotation.identity(len(joints)), np.zeros((len(joints), 3))
-    found = []
-    for point, direction, angles in zip(axes.points, axes.directions, joints.T, strict=True):
-        own = turn * Rotation.from_rotvec(angles[:, None] * direction)
-        shift = turn.apply(point) + shift - own.apply(point)
-        turn = own
-        found.append((turn.apply(point) + shift, turn.as_quat()))
-    return found
+    moved = zip(axes.points, axes.moved(joints), strict=True)
+    return [(turn.apply(point) + shift, turn.as_quat()) for point, (turn, shift) in moved]
 
 
 def _markers(planned: PlannedMotion) -> list[Field]:

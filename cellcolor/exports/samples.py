@@ -107,24 +107,26 @@ def slopes(times: Array, values: Array) -> Array:
     return found
 
 
-def via_points(samples: Samples, within: float) -> Index:
-    """Few samples such that linear interpolation between them stays this near to all the others.
+def via_points(along: Array, values: Array, kept: Index, within: float = 1.0) -> Index:
+    """Few rows such that linear interpolation between them stays this near to all the others.
 
-    The first and the last sample in contact of each stroke are among them.
+    Args:
+        along: (k,) what values are interpolated over, such as times; does not descend.
+        values: (k, m).
+        kept: rows that are among them; the first and the last one always are.
     """
-    edges = np.flatnonzero(np.diff(samples.contact))
-    kept = sorted({0, *edges.tolist(), *(edges + 1).tolist(), len(samples.times) - 1})
+    kept = np.unique(np.concatenate([[0], kept, [len(along) - 1]]))
     found = [0]
-    for begin, end in pairwise(kept):
+    for begin, end in pairwise(kept.tolist()):
         while begin < end:
-            # Find the farthest sample that a straight way reaches, by doubling and halving.
+            # Find the farthest row that a straight way reaches, by doubling and halving.
             good, reach = begin + 1, 2
-            while begin + reach <= end and _straight(samples, begin, begin + reach, within):
+            while begin + reach <= end and _straight(along, values, begin, begin + reach, within):
                 good, reach = begin + reach, 2 * reach
             low, high = good, min(begin + reach, end + 1)
             while high - low > 1:
                 middle = (low + high) // 2
-                if _straight(samples, begin, middle, within):
+                if _straight(along, values, begin, middle, within):
                     low = middle
                 else:
                     high = middle
@@ -133,7 +135,7 @@ def via_points(samples: Samples, within: float) -> Index:
     return np.array(found, dtype=np.int64)
 
 
-def _straight(samples: Samples, begin: int, end: int, within: float) -> bool:
-    times, joints = samples.times[begin : end + 1], samples.joints[begin : end + 1]
-    share = ((times - times[0]) / (times[-1] - times[0]))[:, None]
-    return bool((np.abs(joints[0] + share * (joints[-1] - joints[0]) - joints) <= within).all())
+def _straight(along: Array, values: Array, begin: int, end: int, within: float) -> bool:
+    at, own = along[begin : end + 1], values[begin : end + 1]
+    share = ((at - at[0]) / max(at[-1] - at[0], 1e-12))[:, None]
+    return bool((np.abs(own[0] + share * (own[-1] - own[0]) - own) <= within).all())

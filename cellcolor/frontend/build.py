@@ -20,12 +20,10 @@ from cellcolor.errors import naming
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.stand_in_report import report_on
 from cellcolor.frontend.links import Links
-from cellcolor.frontend.parts.rounding import longest_beside_sharp
-from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import Coloring, find_cracks
 from cellcolor.frontend.reach.limit_colors import LimitColors, limit_colors
-from cellcolor.frontend.report import BuildReport, color_reports, count_reasons, survey
+from cellcolor.frontend.report import BuildReport, color_reports, count_reasons, survey_of
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Task
 from cellcolor.frontend.stage_clock import Progress, StageClock
@@ -304,7 +302,7 @@ def _report(
     farthest = candidates.reasons.max(axis=1)[~reached]
     remarks = prepared.kinematics.remarks(surface.vertices, -surface.normals)
     return BuildReport(
-        survey=survey(surface, prepared.kinematics.viewpoints),
+        survey=survey_of(prepared),
         vertices=len(areas),
         reachable=int(reached.sum()),
         area_m2=float(areas.sum()),
@@ -318,7 +316,7 @@ def _report(
         stand_ins=tuple(map(report_on, prepared.robot.stand_ins)),
         slivers=cleaned.report,
         injectivity=None if prepared.arm.named else _INJECTIVE,
-        rounding=_rounding_in_words(surface, prepared.setup.task) if surface.faceted else None,
+        rounding=_rounding_in_words(prepared.setup.task) if surface.faceted else None,
         limits=_limits_in_words(limits) if limits.positions else None,
     )
 
@@ -331,18 +329,11 @@ def _limits_in_words(limits: LimitColors) -> str:
     return text
 
 
-def _rounding_in_words(surface: Surface, task: Task) -> str:
-    """Over what normals are rounded, and whether the triangles let them be."""
+def _rounding_in_words(task: Task) -> str:
+    """Over what normals are rounded."""
     radius = task.rounding_m
     key = "contact_radius_m" if task.edge_radius_m is None else "edge_radius_m"
-    text = f"rounded over {1e3 * radius:g} mm (task.{key})"
-    longest = longest_beside_sharp(surface)
-    if longest <= radius / 2:
-        return text
-    return (
-        f"{text}; triangles beside sharp edges are up to {1e3 * longest:.2g} mm long, and the tool "
-        "turns over the whole of them: on smaller triangles the minimum may differ"
-    )
+    return f"rounded over {1e3 * radius:g} mm (task.{key})"
 
 
 def _vertex_colors(limits: LimitColors, vertices: int) -> tuple[tuple[int, ...], ...]:

@@ -16,6 +16,7 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
+from cellcolor.frontend.arm.far_shapes import notes_on_shapes
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
@@ -25,6 +26,8 @@ from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_units
 from cellcolor.frontend.parts.inspection import note_on_crossings
 from cellcolor.frontend.parts.placement import Placement
+from cellcolor.frontend.parts.rounding import note_on_triangles
+from cellcolor.frontend.parts.sides import note_on_shell
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.always_touching import always_touching, check_capsules
 from cellcolor.frontend.reach.prepared_arm import PreparedArm, prepare_arm
@@ -43,10 +46,12 @@ class PreparedPart:
     Attributes:
         surface: the surface to be covered.
         body: the shape that must not be hit.
+        open: whether that has a border, so that nothing but its faces says which side is outside.
     """
 
     surface: Surface
     body: Solid
+    open: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,12 +171,15 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     shape = covered
     if scene.solid_object is not None:
         shape = scene.solid_object.surface(scene.folder, deadline)
-    part = PreparedPart(covered, mesh_solid(shape.vertices, shape.faces, deadline))
+    body = mesh_solid(shape.vertices, shape.faces, deadline)
+    part = PreparedPart(covered, body, bool(shape.mesh.border.any()))
     _, workplace = _in_place(scene, part, _around(scene, arm, part, deadline))
     judge = Judge(workplace, scene.validity_test)
-    notes = arm.robot.warnings + notes_on_units(scene, arm.kinematics.reach)
+    notes = arm.robot.warnings + notes_on_shapes(arm.robot)
+    notes += notes_on_units(scene, arm.kinematics.reach)
     if covered.faceted:  # a shape is made without
-        notes += note_on_crossings(covered.mesh)
+        notes += note_on_crossings(covered.mesh) + note_on_shell(covered)
+        notes += note_on_triangles(surface, setup.task.rounding_m)
     if setup.constraints.collision:
         home = None if setup.motion is None else setup.motion.home
         with naming(setup.file):

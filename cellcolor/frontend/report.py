@@ -7,7 +7,7 @@ wound the wrong way would change.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import fcl
 import numpy as np
@@ -20,6 +20,7 @@ from cellcolor.frontend.arm.kinematics import frames_along
 from cellcolor.frontend.contact.fcl_bodies import mesh_model
 from cellcolor.frontend.contact.stand_in_report import StandInReport
 from cellcolor.frontend.parts.surface import Faces, Surface
+from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.reach.slivers import SliverReport
 from cellcolor.frontend.reach.validity_tests import STANDARD_TESTS
@@ -178,6 +179,7 @@ def count_reasons(
 
 _POINTS = 500  # of the surface that are looked at
 _SHORT = 1e-3  # by this part of its length a line of sight ends before the surface
+_DOWN = 0.5  # the cosine between a normal that faces down and gravity
 _THIN = 1e-7  # m; radius of a line of sight
 
 
@@ -190,11 +192,13 @@ class Survey:
         distance_m: from the origin of the robot's base to the nearest point of it.
         from_behind: of an open mesh, the share (0 to 1) of what can be seen of it that shows its
             back only; 0 for a closed one and for what cannot be seen.
+        facing_down: of an open part, the share of its area whose outside faces down; 0 for others.
     """
 
     size_m: tuple[float, ...]
     distance_m: float
     from_behind: float
+    facing_down: float = 0.0
 
     def __str__(self) -> str:
         size = " x ".join(_meters(side) for side in self.size_m)
@@ -208,12 +212,27 @@ class Survey:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Likely mistakes, one sentence each."""
-        if not self.seen_from_behind:
+        if self.seen_from_behind:
+            why = f"the robot sees {100 * self.from_behind:.0f} % of the object only from behind"
+        elif self.facing_down > 0.5:
+            why = f"{100 * self.facing_down:.0f} % of the object's outside faces down"
+        else:
             return ()
         return (
-            f"the robot sees {100 * self.from_behind:.0f} % of the object only from behind: if its "
-            "faces are wound clockwise as seen from outside, the tool comes from the wrong side",
+            f"{why}: if its faces are wound clockwise as seen from outside, the tool comes from "
+            "the wrong side (flip = true under [object] turns a mesh over)",
         )
+
+
+def survey_of(prepared: PreparedScene) -> Survey:
+    """Measure the surface of a scene where it stands."""
+    found = survey(prepared.surface, prepared.kinematics.viewpoints)
+    gravity = np.array(prepared.setup.task.gravity_m_per_s2)
+    if not prepared.part.open or not gravity.any():
+        return found
+    mesh = prepared.surface.mesh
+    down = mesh.triangle_normals @ unit(gravity) > _DOWN
+    return replace(found, facing_down=float(mesh.areas[down].sum() / mesh.areas.sum()))
 
 
 def survey(surface: Surface, viewpoints: Array) -> Survey:

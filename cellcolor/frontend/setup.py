@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from typing import Annotated, Literal, Self
 
 from pydantic import (
@@ -240,12 +241,18 @@ class Motion(Table):
     ``approach_speed_m_per_s`` at most, without it at ``speed_m_per_s``. It retracts by
     ``retract_m`` along the normal; between segments the arm keeps ``clearance_m`` from everything.
     A URDF has velocities, which ``joint_velocities_rad_per_s`` may lower, but no accelerations.
+    A tool that stands off goes straight on by ``lead_m`` before and after each stroke.
+    ``transfer_speed_m_per_s`` caps the tip's speed between strokes. With ``even_feed`` a stroke is
+    slowed down as a whole to a feed that it can keep; ``least_feed`` is the share of
+    ``speed_m_per_s`` below which the judge finds a fault.
     ``joint_jerks_rad_per_s3`` is for judging: trajectories may not change accelerations faster.
     Planned ones are not made to keep it.
     Lists of joints go from base to tool, with m in the place of rad for prismatic ones;
     ``home_rad`` is where the arm begins and ends, nowhere in particular without it. ``"free"`` asks
     for a free position, which is found.
     """
+
+    NEWER = ("lead_m", "transfer_speed_m_per_s", "even_feed", "least_feed")
 
     tool_radius_m: Positive = 0.015
     spacing_m: Positive = 0.01
@@ -254,7 +261,11 @@ class Motion(Table):
     joint_velocities_rad_per_s: tuple[Positive, ...] | None = None
     joint_accelerations_rad_per_s2: tuple[Positive, ...]
     joint_jerks_rad_per_s3: tuple[Positive, ...] | None = None
+    lead_m: NotNegative = 0.0
     approach_speed_m_per_s: Positive | None = None
+    transfer_speed_m_per_s: Positive | None = None
+    even_feed: bool = False
+    least_feed: Annotated[FiniteFloat, Field(gt=0, le=1)] | None = None
     retract_m: Positive = 0.05
     clearance_m: NotNegative = 0.005
     home_rad: tuple[JointAngle, ...] | Literal["free"] | None = None
@@ -265,10 +276,57 @@ class Motion(Table):
         return None if isinstance(self.home_rad, str) else self.home_rad
 
 
-class Setup(FileTable):
-    """Robot, task, thresholds, continuity, sliver policy and motion, shared by scenes."""
+_NAME = re.compile(r"[A-Za-z]\w{0,31}", re.ASCII)
+_NUMBERED = ("krl", "fanuc")  # languages in which tools and work objects are numbered
 
-    NEWER = ("margins",)
+
+class Controller(Table):
+    """The arm's controller, for which ``plan`` writes programs.
+
+    The controller shows for an axis its ``signs`` times the URDF's angle, plus ``offsets_deg``;
+    for the third one less ``j23_factor`` times the second, which is 1 on FANUC's arms unless it is
+    given. Its frame is that of ``base_link``. ``tool`` and ``work_object`` are names, in KRL and on
+    FANUC's controllers numbers.
+    """
+
+    language: Literal["urscript", "rapid", "krl", "fanuc"]
+    signs: Annotated[tuple[Literal[-1, 1], ...], Field(min_length=6, max_length=6)] = (1,) * 6
+    offsets_deg: Annotated[tuple[_Degrees, ...], Field(min_length=6, max_length=6)] = (0.0,) * 6
+    j23_factor: Literal[-1, 0, 1] | None = None
+    base_link: str | None = None
+    tool: str | int | None = None
+    work_object: str | int | None = None
+
+    @model_validator(mode="after")
+    def _named_as_there(self) -> Self:
+        for key in ("tool", "work_object"):
+            given = getattr(self, key)
+            numbered = self.language in _NUMBERED
+            fits = type(given) is int and 1 <= given <= 32
+            if not numbered:
+                fits = isinstance(given, str) and _NAME.fullmatch(given) is not None
+            if given is not None and not fits:
+                what = "a number from 1 to 32" if numbered else "a name of letters and digits"
+                message = f"{key} must be {what} in {self.language}"
+                raise PydanticCustomError("no_frame", "{message}", {"message": message})
+        return self
+
+    @property
+    def frames(self) -> tuple[str | int, str | int]:
+        """The tool and the work object."""
+        usual = (1, 1) if self.language in _NUMBERED else ("cellcolor_tool", "cellcolor_part")
+        return self.tool or usual[0], self.work_object or usual[1]
+
+    @property
+    def coupling(self) -> int:
+        """``j23_factor`` as it is or would be."""
+        return int(self.language == "fanuc") if self.j23_factor is None else self.j23_factor
+
+
+class Setup(FileTable):
+    """Robot, task, thresholds, continuity, slivers, motion and controller, shared by scenes."""
+
+    NEWER = ("margins", "controller")
 
     robot: RobotFiles
     task: Task
@@ -278,3 +336,4 @@ class Setup(FileTable):
     margins: Margins = Margins()
     slivers: Slivers | None = None
     motion: Motion | None = None
+    controller: Controller | None = None

@@ -27,7 +27,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from cellcolor.data.wording import looks_like_degrees
+from cellcolor.data.wording import beyond_turns, looks_like_degrees
 from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import first_fault, read_text
 from cellcolor.files.paths import path_of
@@ -42,8 +42,7 @@ def _within_turns(turns: int) -> BeforeValidator:
     """Refuses angles beyond this many full circles: they must be degrees."""
 
     def check(angle: Any) -> Any:
-        most = 2 * math.pi * turns + 0.01  # 6.2832 is a full circle as well
-        if isinstance(angle, (int, float)) and most < abs(angle) < math.inf:
+        if isinstance(angle, (int, float)) and math.isfinite(angle) and beyond_turns(angle, turns):
             raise ValueError(looks_like_degrees(angle))
         return angle
 

@@ -16,7 +16,7 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.setup import Motion
 from cellcolor.motion.retraced import retraced, stretches
 from cellcolor.motion.strokes import Parting, Stroke
-from cellcolor.motion.timing import Speeds, timed
+from cellcolor.motion.timing import Speeds, evenly_timed, timed
 from cellcolor.motion.ways import Transfer
 
 _NEAR = 0.01  # m, of the tip's way to and from contact, on which it keeps to the approach speed
@@ -63,7 +63,8 @@ def assembled(
     extra: list[ExtraLiftOff] = []
     repeated: list[RepeatedStretch] = []
     last_of: dict[int, int] = {}
-    approach = motion.approach_speed_m_per_s or motion.speed_m_per_s
+    between = motion.transfer_speed_m_per_s or np.inf
+    approach = min(motion.approach_speed_m_per_s or motion.speed_m_per_s, between)
     marked = _retraced(strokes, motion.spacing_m)
     # Why segments have more than one stroke, as often as they have more.
     partings: dict[int, list[Parting]] = {}
@@ -73,9 +74,8 @@ def assembled(
     for number, transfer in enumerate(transfers):
         deadline.check()
         at_stroke = 1 if number else 0  # the first sample is the stroke's last one
-        gap = _add_transfer(
-            rows, robot, transfer, at_stroke, number < len(strokes), speeds, approach
-        )
+        ends = at_stroke, number < len(strokes)
+        gap = _add_transfer(rows, robot, transfer, ends, speeds, (approach, between))
         if gap is not None:
             unplanned[gap] = transfer.blocked
         if number == len(strokes):
@@ -85,14 +85,12 @@ def assembled(
             why = partings[stroke.segment].pop(0)
             last = last_of[stroke.segment]
             extra.append(ExtraLiftOff(last, stroke.segment, why.reason, why.text, why.place))
-        times = rows.now + timed(stroke.joints, speeds, stroke.points, motion.speed_m_per_s)
+        begun = _add_stroke(rows, robot, stroke, motion, speeds)
         repeated += [
-            RepeatedStretch(rows.count + a, rows.count + b, "beside another pass")
+            RepeatedStretch(begun + a, begun + b, "beside another pass")
             for a, b in stretches(marked[number])
         ]
-        rows.add(times, stroke.joints, stroke.points, stroke.normals, stroke.segment)
-        rows.now = float(times[-1])
-        last_of[stroke.segment] = rows.count - 1
+        last_of[stroke.segment] = begun + len(stroke) - 1
     times, joints, points, normals, segment = map(np.concatenate, zip(*rows.parts, strict=True))
     return Trajectory(
         name="",
@@ -110,6 +108,24 @@ def assembled(
     )
 
 
+def _add_stroke(rows: _Rows, robot: Robot, stroke: Stroke, motion: Motion, speeds: Speeds) -> int:
+    """Add a stroke with its leads, as one motion; the number of its first sample in contact."""
+    joints, poses = stroke.whole, forward(robot, stroke.whole)
+    first = len(stroke.leads[0]) if stroke.leads else 0
+    own = slice(first, first + len(stroke))
+    points, normals = poses.tip, -poses.tool_axis
+    points[own], normals[own] = stroke.points, stroke.normals
+    how = joints, speeds, points, motion.speed_m_per_s
+    times = evenly_timed(*how, 2 * motion.tool_radius_m) if motion.even_feed else timed(*how)
+    times = times + rows.now
+    begun = rows.count + first
+    parts = ((slice(first), -1), (own, stroke.segment), (slice(own.stop, None), -1))
+    for part, segment in parts:
+        rows.add(times[part], joints[part], points[part], normals[part], segment)
+    rows.now = float(times[-1])
+    return begun
+
+
 def _retraced(strokes: Sequence[Stroke], spacing: float) -> dict[int, Mask]:
     """Of each stroke, which samples run along another pass over its segment."""
     found: dict[int, Mask] = {}
@@ -124,23 +140,28 @@ def _add_transfer(
     rows: _Rows,
     robot: Robot,
     transfer: Transfer,
-    first: int,
-    to_stroke: bool,
+    ends: tuple[int, bool],
     speeds: Speeds,
-    approach_speed: float,
+    tip_speeds: tuple[float, float],
 ) -> int | None:
-    """Add the samples of a transfer that no stroke has; where its gap is, if it has one."""
+    """Add the samples of a transfer that no stroke has; where its gap is, if it has one.
+
+    Args:
+        ends: the first sample that no stroke has, and whether it leads to a stroke.
+        tip_speeds: at most, m/s: near contact, and elsewhere.
+    """
+    first, to_stroke = ends
     joints, count = transfer.joints, len(transfer.joints)
     pieces = [(0, count - 1)]
     if transfer.gap is not None:
-        ends = [0, transfer.gap, transfer.gap + 1, count - 1]
-        pieces = [(a, b) for a, b in pairwise(ends) if b > a]
+        cuts = [0, transfer.gap, transfer.gap + 1, count - 1]
+        pieces = [(a, b) for a, b in pairwise(cuts) if b > a]
     times, poses = np.zeros(count), forward(robot, joints)
     steps = np.linalg.norm(np.diff(poses.tip, axis=0), axis=1)
     way = np.cumsum(steps)
     left = steps.sum() - way + steps
     near = ((way <= _NEAR) & (first > 0)) | ((left <= _NEAR) & to_stroke)
-    fastest = np.where(near, approach_speed, np.inf)
+    fastest = np.where(near, *tip_speeds)
     for a, b in pieces:
         times[a : b + 1] = times[a] + timed(
             joints[a : b + 1], speeds, poses.tip[a : b + 1], fastest[a:b]

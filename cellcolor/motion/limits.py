@@ -21,8 +21,8 @@ def motion_of(prepared: PreparedScene) -> Motion:
     Raises:
         InputError: there is none, or a list has another number of joints than the arm, the home
             position is outside the limits, a length is larger than the part or the arm's reach, the
-            tool retracts less than it has to keep clear, or the arm is
-            planar.
+            tool retracts less than it has to keep clear, a tool that touches is asked for leads, or
+            the arm is planar.
     """
     setup, robot = prepared.setup, prepared.robot
     with naming(setup.file):
@@ -50,6 +50,9 @@ def motion_of(prepared: PreparedScene) -> Motion:
                     message += f": {looks_like_degrees(at)}"
                 raise InputError(None, f"motion.home_rad[{joint}]", message)
         check_motion(motion, prepared.surface, prepared.scene, prepared.kinematics.reach)
+        if motion.lead_m and not setup.task.stand_off_m:
+            message = "only a tool that stands off (task.stand_off_m) goes on beyond its stroke"
+            raise InputError(None, "motion.lead_m", message)
         least = setup.task.contact_radius_m + motion.clearance_m
         if motion.retract_m <= least:
             message = f"must be above {least:g} m, contact radius and clearance together"

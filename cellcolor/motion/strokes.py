@@ -47,6 +47,8 @@ class Stroke:
         joints: (k, joints) rad or m, unwound; whole turns of all of them together are chosen
             later.
         parting: why it is separate from an earlier stroke of its segment; None for the first.
+        leads: (m, joints) before its first sample and after its last one, without contact, in the
+            order in which they are driven; None for a stroke without leads.
     """
 
     segment: int
@@ -55,6 +57,13 @@ class Stroke:
     normals: Array
     joints: Array
     parting: Parting | None = None
+    leads: tuple[Array, Array] | None = None
+
+    @property
+    def whole(self) -> Array:
+        """(k, joints) with both leads."""
+        before, after = self.leads or (self.joints[:0], self.joints[:0])
+        return np.concatenate([before, self.joints, after])
 
     def __len__(self) -> int:
         return len(self.points)
@@ -100,7 +109,9 @@ class Stroke:
 
     def turned(self, turns: Index, space: JointSpace) -> Stroke:
         """The stroke with every joint (joints,) turned by a number of periods."""
-        return replace(self, joints=self.joints + space.period * turns)
+        off = space.period * turns
+        leads = None if self.leads is None else (self.leads[0] + off, self.leads[1] + off)
+        return replace(self, joints=self.joints + off, leads=leads)
 
 
 def trimmed(

@@ -22,6 +22,8 @@ from cellcolor.arrays import Array
 _LEAST = 0.001  # s, of a step; where neither tool nor joints move
 _BOW = 0.02  # rad or m; so far at most a motion speeds up beside a straight line
 _MARGIN = 0.995  # of the accelerations; the sweeps take neighboring steps for about equally long
+_EVEN = 0.9  # of its feed a stroke keeps everywhere if that is to be even
+_HALVINGS = 8  # of the range in which an even feed is looked for
 _ROUNDS = 60  # of sweeps; 5 to 15 are enough on sharp edges
 
 
@@ -69,6 +71,32 @@ def timed(
         slower = np.maximum(slower[1:], slower[:-1])
         cap = np.where(slower > 1.0, np.minimum(cap, squares / slower), cap)
     return np.asarray(times * np.sqrt(excess.max()))
+
+
+def evenly_timed(
+    joints: Array, speeds: Speeds, points: Array, tool_speed: float, window: float
+) -> Array:
+    """As :func:`timed`, at the fastest feed that the whole stroke keeps up to a tenth.
+
+    It keeps it over each stretch as long as the window, m, but for the first and the last one, in
+    which the tool comes from rest and goes to rest.
+    """
+    steps = np.maximum(np.linalg.norm(np.diff(points, axis=0), axis=1), 1e-9)
+    way = np.concatenate([[0.0], np.cumsum(steps)])
+    begins = way[(way >= window) & (way <= way[-1] - 2 * window)]
+
+    def at(feed: float) -> tuple[Array, bool]:
+        times = timed(joints, speeds, points, feed)
+        taken = np.interp(begins + window, way, times) - np.interp(begins, way, times)
+        return times, bool(taken.max(initial=0.0) <= window / (_EVEN * feed))
+
+    times, kept = at(tool_speed)
+    slow, fast, best = 0.0, tool_speed, times if kept else None
+    for _ in range(0 if kept else _HALVINGS):
+        middle = (slow + fast) / 2
+        times, kept = at(middle)
+        slow, fast, best = (middle, fast, times) if kept else (slow, middle, best)
+    return times if best is None else best
 
 
 def accelerations(times: Array, joints: Array, speeds: Speeds) -> Array:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, unit
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import forward
@@ -32,6 +32,7 @@ _HOPELESS = 1000.0  # s; added to the time of such a move
 _BLOCKED = 10.0  # s; added to the time of a move for which no simple way is known
 _DEEP = 60.0  # s; and by so much, times the share of it that is not free
 _LONGER = 10.0  # times the time of a straight move that is blocked; so few turns are preferred
+_ALONG = 0.003  # m of the end of a stroke, which say where its lead goes
 _ROOM = 0.999  # of the largest steps, for rounding
 _LEAVING = 0.0025  # m; for so long the tip of a tool that leaves may be near; the judge has 3 mm
 _TIP = Body("tool tip", 0, np.zeros(3), np.zeros(3), 0.0011, False)  # as near; the judge has 1 mm
@@ -116,7 +117,7 @@ class Transfers:
         Raises:
             OutOfTime: the deadline came first.
         """
-        reachable = [self._reachable(stroke) for stroke in strokes]
+        reachable = [self._led(self._reachable(stroke)) for stroke in strokes]
         visits = [self._visit(one) for one in reachable]
         tried: list[_Attempt] = []
         for _ in range(_ATTEMPTS):
@@ -140,9 +141,9 @@ class Transfers:
 
     def _visit(self, one: _Reachable) -> Visit:
         """What has to fit into the limits: the retreats too, if full circles can bring them in."""
-        span = np.concatenate([one.onto, one.stroke.joints, one.off])
+        span = np.concatenate([one.onto, one.stroke.whole, one.off])
         if not self._space.fits(span):
-            span = one.stroke.joints
+            span = one.stroke.whole
         return Visit(one.onto[-1], one.off[-1], span)
 
     def _attempt(self, reachable: Sequence[_Reachable], circles: Sequence[Index]) -> _Attempt:
@@ -169,14 +170,40 @@ class Transfers:
             stroke, onto = begun
             wound = self._space.period * self._space.periods(stroke.joints[-1] - onto[0])
             return _Reachable(stroke, onto, onto + wound)
-        onto = self._retreat(stroke, 0)
+        onto = self._retreat_at(stroke, 0)
         if len(onto) == 1:
             stroke, onto = self._ended_elsewhere(stroke.reversed())
             stroke = stroke.reversed()
-        off = self._retreat(stroke, -1)
+        off = self._retreat_at(stroke, -1)
         if len(off) == 1:
             stroke, off = self._ended_elsewhere(stroke)
         return _Reachable(stroke, onto, off)
+
+    def _led(self, one: _Reachable) -> _Reachable:
+        """The same with leads straight on from both ends, as far as the arm is free there.
+
+        An end where it cannot retreat from its lead has none.
+        """
+        length, stroke = self._motion.lead_m, one.stroke
+        if not length or len(stroke) < 2:
+            return one
+        ways, retreats = [], []
+        for at, retreat in ((0, one.onto), (-1, one.off)):
+            points = stroke.points if at else stroke.points[::-1]
+            far = np.linalg.norm(points - points[-1], axis=1) > _ALONG
+            normal, before = stroke.normals[at], int(np.argmax(np.append(far[::-1], True)))
+            along = points[-1] - points[max(len(points) - 1 - before, 0)]
+            along = unit(along - (along @ normal) * normal)
+            way, fine = self._followed(stroke.joints[at], normal, along, stroke.branch, length)
+            way = way[: int(np.argmin(fine)) + 1]
+            off = self._retreat(way[-1], normal, stroke.branch)
+            if len(off) == 1:
+                way, off = way[:1], retreat
+            # Both are counted on from the same end of the stroke.
+            ways.append(way[1:])
+            retreats.append(off)
+        led = replace(stroke, leads=(ways[0][::-1], ways[1]))
+        return _Reachable(led, retreats[0], retreats[1])
 
     def _begun_elsewhere(self, stroke: Stroke) -> tuple[Stroke, Array] | None:
         """A closed stroke begun where the arm can leave it, and the retreat; None if nowhere.
@@ -188,7 +215,7 @@ class Transfers:
         found: list[tuple[float, Stroke, Array]] = []
         for at in sorted(set(apart.tolist()), key=lambda at: min(at, len(stroke) - at)):
             begun = stroke.begun_at(at, self._space)
-            onto = self._retreat(begun, 0)
+            onto = self._retreat_at(begun, 0)
             if len(onto) > 1:
                 found.append((self._blocked_from_home(onto[-1]), begun, onto))
                 if not found[-1][0]:
@@ -210,7 +237,7 @@ class Transfers:
                 break
             self._deadline.check()
             at = len(stroke) - 1 - int(np.searchsorted(back, far))
-            off = self._retreat(stroke, at)
+            off = self._retreat_at(stroke, at)
             if len(off) == 1 or at < 1:
                 continue
             if far <= _TRIMMED * spacing:
@@ -219,8 +246,12 @@ class Transfers:
             return stroke.followed_by(again), off
         return stroke, stroke.joints[-1:]
 
-    def _retreat(self, stroke: Stroke, at: int) -> Array:
-        """Off the surface from a sample of a stroke, at most as high as the setup says.
+    def _retreat_at(self, stroke: Stroke, at: int) -> Array:
+        """The retreat from a sample of a stroke."""
+        return self._retreat(stroke.joints[at], stroke.normals[at], stroke.branch)
+
+    def _retreat(self, joints: Array, normal: Array, branch: int) -> Array:
+        """Off the surface from a configuration (joints,), at most as high as the setup says.
 
         It leads along the normal if the arm keeps its whole clearance at the end, otherwise in the
         direction where it keeps most of it there. The tool's direction and the branch stay the
@@ -229,10 +260,9 @@ class Transfers:
         Returns:
             (k, joints) from the contact on, unwound.
         """
-        joints, normal = stroke.joints[at], stroke.normals[at]
         found = []
         for direction in _directions(normal):
-            way = self._off(joints, normal, direction, stroke.branch)
+            way = self._off(joints, normal, direction, branch)
             if len(way) == 1:
                 continue
             level = self._ways.level(way[-1])
@@ -243,7 +273,18 @@ class Transfers:
 
     def _off(self, joints: Array, normal: Array, direction: Array, branch: int) -> Array:
         """The retreat (k, joints) in one direction, as far as the arm can follow it."""
-        height = self._motion.retract_m
+        way, fine = self._followed(joints, normal, direction, branch, self._motion.retract_m)
+        tips = forward(self._prepared.robot, way[1:]).tip
+        fine[:-1] &= ~self._drags(tips)
+        return self._cut(way[: int(np.argmin(fine)) + 1])
+
+    def _followed(
+        self, joints: Array, normal: Array, direction: Array, branch: int, height: float
+    ) -> tuple[Array, Mask]:
+        """A straight way (k, joints) of the tip, and which of its steps (k,) are fine.
+
+        The tool's direction and the branch stay the same. The last step leads nowhere.
+        """
         tip = forward(self._prepared.robot, joints[None]).tip[0]
         count = int(np.ceil(height / (DISTANCE * _ROOM)))
         points = tip + np.linspace(0.0, height, count + 1)[1:, None] * direction
@@ -253,9 +294,7 @@ class Transfers:
         found = found[: count if solved.all() else int(np.argmin(solved))]
         way = joints + self._space.unwrap(np.concatenate([joints[None], found]) - joints)
         steady = self._space.largest(np.diff(way, axis=0)) <= _FASTER
-        fine = steady & self._leaving.clear(way[1:]) & ~self._drags(points[: len(found)])
-        fine = np.append(fine, False)
-        return self._cut(way[: int(np.argmin(fine)) + 1])
+        return way, np.append(steady & self._leaving.clear(way[1:]), False)
 
     def _drags(self, tips: Array) -> Mask:
         """Whether the tip (k, 3) is at the object again, or still, after it has left the contact.

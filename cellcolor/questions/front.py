@@ -142,6 +142,11 @@ class Front:
         """Whether every point is proved for any division of the surface."""
         return all(point.proved_for_surface for point in self.points)
 
+    @property
+    def complete(self) -> bool:
+        """Whether the time limit left no number of segments out."""
+        return not self.points or len(self.at_most) >= self.points[-1].segments - 1
+
     def at_least(self, share: float) -> FrontPoint:
         """The point with the fewest lift-offs that covers a share.
 
@@ -232,4 +237,7 @@ class Front:
         return FrontChoice(point, proved(on_surface=False), proved(on_surface=True))
 
     def __str__(self) -> str:
-        return "\n".join([f"{self.instance.name}: what lift-offs can cover", *map(str, self)])
+        more = () if self.complete else ("  the time limit came before everything was tried",)
+        return "\n".join(
+            [f"{self.instance.name}: what lift-offs can cover", *map(str, self), *more]
+        )

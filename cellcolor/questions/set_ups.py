@@ -64,6 +64,7 @@ class SetUpPlan:
         alone: the set-up that covers most by itself, with the segments that it needs then.
         candidates: how many set-ups could be used.
         refused: why others could not be, a sentence each.
+        left: how many candidates the time limit left unbuilt.
     """
 
     name: str
@@ -77,6 +78,12 @@ class SetUpPlan:
     alone: SetUp
     candidates: int
     refused: tuple[str, ...] = ()
+    left: int = 0
+
+    @property
+    def complete(self) -> bool:
+        """Whether the time limit left no candidate out."""
+        return not self.left
 
     @property
     def segments(self) -> int:
@@ -115,6 +122,7 @@ class SetUpPlan:
             "alone": self.alone.to_document(),
             "candidates": self.candidates,
             "refused": list(self.refused),
+            "left": self.left,
         }
 
     def __str__(self) -> str:
@@ -132,4 +140,6 @@ class SetUpPlan:
             lines.append(f"  one set-up alone: {alone}, {lift_offs}")
         if self.refused:
             lines.append(f"  {count(len(self.refused), 'candidate')} refused: {self.refused[0]}")
+        if self.left:
+            lines.append(f"  the time limit left {count(self.left, 'candidate')} unbuilt")
         return "\n".join(lines)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,11 +33,13 @@ class Candidates:
         scenes: of each, with the part in its place.
         surfaces: of each, in the part's own frame; all on one mesh.
         refused: why others cannot be used, a sentence each.
+        left: how many the deadline left unbuilt.
     """
 
     scenes: tuple[Scene, ...]
     surfaces: tuple[LabelledSurface, ...]
     refused: tuple[str, ...]
+    left: int = 0
 
 
 def candidates_of(
@@ -76,7 +78,9 @@ def candidates_of(
             except OutOfTime:
                 if not found:
                     raise
-                return _together(found, refused)
+                places = [{pose_of(one.placement), *poses} for one in scenes]
+                left = sum(map(len, places)) - len(found) - len(refused)
+                return replace(_together(found, refused), left=left)
             except InputError as error:
                 own_place = pose == pose_of(given.placement)
                 named = (given is not scenes[0]) if own_place else (by_hand and len(scenes) == 1)
@@ -170,6 +174,7 @@ def plan_of(
         alone=_set_up(candidates, best, alone.segments or 0, shares[best] / whole),
         candidates=len(candidates.scenes),
         refused=candidates.refused,
+        left=candidates.left,
     )
 
 

@@ -23,7 +23,7 @@ class Seamed:
     """An instance with the strands of its seams as edges; as it is if it needs no seams.
 
     Raises:
-        TooLarge: the seams would have too many strands: each may need twice those before it.
+        TooLarge: the seams would have too many strands.
 
     Attributes:
         instance: the one with a single live loop in each cell.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from cellcolor.errors import InputError
@@ -26,13 +27,21 @@ def pattern_names() -> tuple[str, ...]:
 
 
 def find_pattern(name: str) -> Pattern:
-    """The pattern of that name.
+    """The pattern of that name; ``back-and-forth:HOW`` says which way its rows run.
 
     Raises:
         InputError: no pattern has this name, or two have it; or it cannot be imported.
     """
+    name, _, rows = name.partition(":")
     loaded = load(find(name, PATTERNS, _GROUP, "pattern"), "pattern")
     if not callable(loaded):
         raise InputError(None, "pattern", f"{name!r} is not a function")
+    if rows and name != "back-and-forth":
+        raise InputError(None, "pattern", f"{name} has no rows whose direction could be given")
+    if rows:
+        from cellcolor.tool_paths.back_and_forth import fields_of
+
+        fields_of(rows)  # refuses what is no direction
+        return partial(loaded, rows=rows)
     pattern: Pattern = loaded
     return pattern

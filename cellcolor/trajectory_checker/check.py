@@ -9,7 +9,7 @@ import numpy as np
 
 from cellcolor.arrays import Array
 from cellcolor.data.trajectory import Trajectory
-from cellcolor.data.trajectory_verdict import CoveredArea, TrajectoryVerdict
+from cellcolor.data.trajectory_verdict import CoveredArea, StrokeFeed, TrajectoryVerdict
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import BuildResult
@@ -18,6 +18,7 @@ from cellcolor.trajectory_checker.area import judge_area
 from cellcolor.trajectory_checker.contact import contact_of
 from cellcolor.trajectory_checker.dense import densified, poses_of
 from cellcolor.trajectory_checker.fault_list import FaultList
+from cellcolor.trajectory_checker.feed import judge_feed, judge_transfers
 from cellcolor.trajectory_checker.fine_mesh import refined
 from cellcolor.trajectory_checker.joint_motion import JointLimits, judge_joints
 from cellcolor.trajectory_checker.on_surface import (
@@ -65,12 +66,17 @@ def check_trajectory(
     notes: list[str] = []
     report("joints")
     tips, axes = poses_of(robot, trajectory.joints, deadline)
-    jumps = judge_joints(trajectory, tips, _joint_limits(prepared, timed, notes), timed, faults)
+    joint_limits = _joint_limits(prepared, timed, notes)
+    jumps = judge_joints(trajectory, tips, joint_limits, timed, faults)
     judge_poses(trajectory, robot, tips, axes, faults)
     judge_lift_offs(trajectory, minimum_lift_offs, faults)
     skip = jumps.copy()
     skip[[sample for sample in trajectory.unplanned if sample < len(skip)]] = True
     dense = densified(trajectory, robot, tips, axes, skip, deadline)
+    feeds: tuple[StrokeFeed, ...] = ()
+    if timed and motion is not None:
+        judge_transfers(trajectory, dense, motion, faults)
+        feeds = judge_feed(trajectory, dense, joint_limits, motion, faults)
     report("validity")
     judge_validity(prepared, trajectory, dense, deadline, faults)
     report("contact")
@@ -80,7 +86,8 @@ def check_trajectory(
         fine = replace(fine, away=OFF_SURFACE)
     contact = contact_of(prepared, trajectory, dense, fine, deadline)
     touching = judge_contact(contact, direction, faults)
-    judge_dragged(dense, fine, deadline, faults)
+    if not prepared.setup.task.stand_off_m:  # else nothing is touched
+        judge_dragged(dense, fine, deadline, faults)
     if prepared.setup.task.turn is not None:
         judge_turn(prepared.setup.task.turn, contact, direction, faults)
     judge_cracks(built, contact, fine, faults)
@@ -110,6 +117,7 @@ def check_trajectory(
         faults=tuple(faults.faults),
         covered=covered,
         notes=tuple(notes),
+        feeds=feeds,
     )
 
 
@@ -170,7 +178,8 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
         notes.append("The setup has no [motion], so accelerations are not judged.")
     if motion is not None:
         tool_speed = motion.speed_m_per_s
-        touch_speed = motion.approach_speed_m_per_s or np.inf
+        if not setup.task.stand_off_m:
+            touch_speed = motion.approach_speed_m_per_s or np.inf
         for key in ("velocities_rad_per_s", "accelerations_rad_per_s2", "jerks_rad_per_s3"):
             given = getattr(motion, f"joint_{key}")
             if given is not None and len(given) != robot.joints:

@@ -91,6 +91,12 @@ near_singular_determinant = 0.05
 probe_spacing_m = 0.0005
 validity_spacing_m = 0.001
 """
+CONTROLLER = """
+# At zero the controller's axes are where the URDF's are, and turn in the same sense.
+[controller]
+language = "{language}"
+"""
+LANGUAGES = {"kr6": "krl", "irb120": "rapid"}
 NO_FORCE = """
 [constraints]
 force = false                         # the URDF has no masses
@@ -100,6 +106,8 @@ force = false                         # the URDF has no masses
 def setup(name: str, arm: Arm) -> str:
     """The text of an arm's setup."""
     template = SCARA if arm.kinematics == "scara" else SETUP
+    if name in LANGUAGES:
+        template += CONTROLLER
     return template.format(
         about=arm.about,
         name=name,
@@ -108,6 +116,7 @@ def setup(name: str, arm: Arm) -> str:
         first=arm.links[1].name,
         constraints="" if arm.force else NO_FORCE,
         home=list(arm.home),
+        language=LANGUAGES.get(name),
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import os
 import re
@@ -18,6 +19,7 @@ from shipped import edited, wok_file
 from stand_in import stand_in
 
 import cellcolor
+import cellcolor.door.planning
 import cellcolor.motion.plan
 import cellcolor.motion.scene_painting
 import cellcolor.trajectory_checker.check
@@ -30,9 +32,13 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.deadline import OutOfTime
 from cellcolor.door.plan_files import KINDS
+from cellcolor.errors import InputError
 from cellcolor.exports.registry import EXPORTS
 from cellcolor.frontend.scene import Scene
+from cellcolor.questions.explanation import Explanation, RelaxedMinimum
+from cellcolor.questions.placements import PlacedMinimum, Placements
 
+OTHER_ARMS = {name for name in KINDS if name.endswith((".mod", ".src", ".ls"))}
 Capture = pytest.CaptureFixture[str]
 FILES = {
     "instance.json": Instance,
@@ -79,10 +85,7 @@ def test_all_files_are_there_and_belong_together(
 ) -> None:
     folder = tmp_path / "new" / "folder"
     assert run("plan", scene, "-o", folder) == 0
-    assert {file.name for file in folder.iterdir()} == set(KINDS) - {
-        "cellcolor.mod",
-        "cellcolor.src",
-    }
+    assert {file.name for file in folder.iterdir()} == set(KINDS) - OTHER_ARMS
     read = {name: kind.read(folder / name) for name, kind in FILES.items()}
     assert read["paths.json"].surface_sha256 == read["painted.surface.json"].sha256
     assert run("check", folder / "instance.json", folder / "solution.json") == 0
@@ -95,6 +98,9 @@ def test_all_files_are_there_and_belong_together(
     assert "2 segments, 1 lift-off, optimal" in said.out
     assert f"wrote {len(list(folder.iterdir()))} files to {folder}" in said.out
     assert "report.html" in said.out
+    page = (folder / "report.html").read_text("utf-8")
+    assert "cellcolor.script and cellcolor_linear.script: joint moves" in page
+    assert "No parser of the maker" in page
     assert "warning: the object's edges are up to" in said.err  # what `build` warns of
 
 
@@ -111,10 +117,12 @@ def test_a_second_time_the_files_are_replaced(scene: Path, tmp_path: Path) -> No
 
 def test_keys_of_the_setup_are_replaced(scene: Path, tmp_path: Path, asked: dict[str, Any]) -> None:
     options = ["--spacing-m", "0.02", "--speed-m-per-s", "0.1", "--home-rad", "0,-1,1,-1,-1,0"]
+    options += ["--even-feed", "--least-feed", "0.5"]
     assert run("plan", scene, "-o", tmp_path / "a", "--pattern", "contour", *options) == 0
     motion = asked["motion"]
     assert (motion.spacing_m, motion.speed_m_per_s) == (0.02, 0.1)
     assert motion.home_rad == (0, -1, 1, -1, -1, 0)
+    assert (motion.even_feed, motion.least_feed) == (True, 0.5)
     assert motion.tool_radius_m == 0.015  # of the setup
     assert asked["pattern"] == "contour"
     # What the surface is does not depend on how the arm moves later.
@@ -153,6 +161,7 @@ def test_without_a_table_the_needed_key_is_named(
         (["--home-rad", "0,1"], "motion.home_rad"),
         (["--home-rad", "0,1,x,0,0,0"], "--home-rad"),
         (["--pattern", "zigzag"], "pattern"),
+        (["--pattern", "back-and-forth:x"], "pattern"),
         (["--time-limit", "-1"], "--time-limit"),
     ],
 )
@@ -258,6 +267,90 @@ def test_a_time_limit_before_the_painting_leaves_the_number(
     assert {file.name for file in (tmp_path / "a").iterdir()} == set(written)
     assert {"instance.json", "solution.json", "report.html"} <= set(written)
     assert not [name for name in written if "painted" in name]
+
+
+@pytest.mark.usefixtures("asked")
+def test_a_question_without_an_answer_is_said_with_the_reason(
+    scene: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On the terminal and on the page, with exit code 3; the others are answered all the same."""
+    asked: list[str] = []
+
+    def question(name: str, end: Exception | Any) -> None:
+        def answer(*_: Any, **__: Any) -> Any:
+            asked.append(name)
+            if isinstance(end, Exception):
+                raise end
+            return end
+
+        monkeypatch.setattr(cellcolor.door.planning, name, answer)
+
+    minimum = RelaxedMinimum((), (), 2, 2, 1.0, 1.0, True)
+    here = PlacedMinimum((0.5, 0, 0, 0, 0, 0), 2, 1.0, True, 200)
+    question("tradeoff", OutOfTime("the time limit came first"))
+    question("explain", Explanation("wok", minimum, (), complete=False))
+    question("place", Placements("wok", 1.0, here, (), ()))
+    options = ["--ask", "place", "--ask", "tradeoff", "--ask", "explain"]
+    assert run("plan", scene, "-o", tmp_path / "a", *options) == 3
+    assert asked == ["tradeoff", "explain", "place"]
+    said, page = capsys.readouterr().out, (tmp_path / "a" / "report.html").read_text("utf-8")
+    for line in (
+        "tradeoff: not answered, the time limit came first",
+        "explain: answered in part, the time limit came first",
+    ):
+        assert line in said.splitlines() and line in page
+    assert "place: not" not in said
+    question("tradeoff", cellcolor.tradeoff(stand_in().built))
+    assert run("plan", scene, "-o", tmp_path / "b", "--ask", "tradeoff") == 0
+    # A question that cannot be asked does not cost the plan.
+    question("place", InputError(None, "x", "the range is empty"))
+    assert run("plan", scene, "-o", tmp_path / "c", "--ask", "place") == 3
+    assert "place: not answered: x: the range is empty" in capsys.readouterr().out
+    assert (tmp_path / "c" / "trajectory.json").exists()
+
+
+def test_questions_after_a_plan_that_is_not_ready_are_said(
+    scene: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cellcolor.motion.plan, "plan_motion", out_of_time(laid=False))
+    assert run("plan", scene, "-o", tmp_path / "a", "--ask", "place") == 3
+    line = "place: not asked, the time limit came first"
+    assert line in capsys.readouterr().err
+    assert line in (tmp_path / "a" / "report.html").read_text("utf-8")
+
+
+@pytest.mark.usefixtures("asked")
+@pytest.mark.parametrize(("table", "code"), [("", 0), ('[controller]\nlanguage = "urscript"', 3)])
+def test_a_program_that_is_not_written_is_said_with_the_reason(
+    table: str, code: int, scene: Path, tmp_path: Path, capsys: Capture
+) -> None:
+    """With exit code 3 if the setup asks for it by naming the controller."""
+    setup = scene.parent / "ur5_polishing.toml"
+    setup.write_text(f"{setup.read_text()}\n{table}\n")
+    urdf = next(scene.parent.glob("**/ur5.urdf"))
+    turned = urdf.read_text().replace("wrist_3_joint", "hand_joint")
+    urdf.write_text(turned)
+    folder = tmp_path / "a"
+    assert run("plan", scene, "-o", folder) == code
+    said, page = capsys.readouterr().out, (folder / "report.html").read_text("utf-8")
+    reason = "named as those of Universal Robots" if table else "the setup names no controller"
+    (line,) = [one for one in said.splitlines() if one.startswith("program for a controller: not")]
+    assert reason in line and line in html.unescape(page)
+    written = list(folder.iterdir())
+    assert f"wrote {len(written)} files" in said
+    assert not [file for file in written if file.name.startswith("cellcolor")]
+
+
+@pytest.mark.usefixtures("asked")
+def test_a_base_link_that_is_not_there_is_refused_at_once(
+    scene: Path, tmp_path: Path, capsys: Capture
+) -> None:
+    setup = scene.parent / "ur5_polishing.toml"
+    table = '[controller]\nlanguage = "urscript"\nbase_link = "pedestal"\n'
+    setup.write_text(f"{setup.read_text()}\n{table}")
+    assert run("plan", scene, "-o", tmp_path / "a") == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "controller.base_link: no link 'pedestal'" in line
 
 
 def test_a_signal_on_the_way_leaves_nothing(

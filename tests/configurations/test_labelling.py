@@ -197,6 +197,53 @@ def test_the_caller_settles_what_is_doubtful() -> None:
     assert "3 mesh edges of its surface are doubtful" in note
 
 
+def test_what_was_found_twice_counts_once() -> None:
+    """A solver from several seeds finds a solution again, some circles away or a little off."""
+    vertices, faces = plate(2, 2)
+    once = [np.array([[0.1 * v, 1.0], [0.1 * v + 2, -1.0]]) for v in range(4)]
+    again = [np.concatenate([own, own[::-1] + CIRCLE + 3e-5, own[:1]]) for own in once]
+    found = from_configurations(vertices, faces, again)
+    assert not found.doubtful
+    assert (
+        found.surface.vertex_colors
+        == from_configurations(vertices, faces, once).surface.vertex_colors
+    )
+    assert [own.tolist() for own in found.color_of] == [[0, 1, 1, 0, 0]] * 4
+
+
+def test_a_number_does_not_make_two_colors_one() -> None:
+    """Color "up" has two components, and another color is called "up 1"."""
+    vertices, faces = plate(3, 2)
+    far = [[[0.0], [0.5]], [[2.0]], [[0.0]]] * 2
+    names = [["up", "up 1"], ["up"], ["up"]] * 2
+    found = from_configurations(vertices, faces, far, names=names)
+    assert sorted(found.surface.colors) == ["up 1", "up 2", "up 3", "up 4"]
+
+
+def test_a_plan_in_joint_angles_is_judged() -> None:
+    """Two branches over a plate; a plan that changes its branch in the middle lifts off once."""
+    vertices, faces = plate(4, 2)
+    both = [np.array([[x, 0.0], [x + 2, 1.0]]) for x, _, _ in vertices]
+    found = from_configurations(vertices, faces, both, limits=[[-1.0, -1.0], [2.05, 2.0]])
+    joints = np.array([own[int(v % 4 > 1)] for v, own in enumerate(both)]) + CIRCLE
+    joints[3] = joints[7] = np.nan  # the last ones of branch 2 are outside the limits
+    plan = cellcolor.JointPlan(joints + 5e-4)
+    colors = found.colors_of(plan)
+    assert colors == (0, 0, 1, None) * 2
+    verdict = cellcolor.judge(found.surface, colors)
+    assert [v.vertex for v in verdict.violations] == [3, 7]
+    whole = found.colors_of(cellcolor.JointPlan(np.array([own[0] for own in both])))
+    assert cellcolor.judge(found.surface, whole).optimal
+    joints[3] = both[3][1]
+    with pytest.raises(InputError, match=r"joints\[3\]: is outside the joint limits"):
+        found.colors_of(cellcolor.JointPlan(joints))
+    joints[3] = [0.5, 0.5]
+    with pytest.raises(InputError, match=r"joints\[3\]: is no configuration of vertex 3, at"):
+        found.colors_of(cellcolor.JointPlan(joints))
+    with pytest.raises(InputError, match=r"has shape \(1, 2\), must be \(8, 2\)"):
+        found.colors_of(cellcolor.JointPlan(joints[:1]))
+
+
 def test_names_keep_configurations_apart() -> None:
     vertices, faces = plate(2, 2)
     near = [np.array([[0.0], [0.1]])] * 4
@@ -236,6 +283,10 @@ def test_a_vertex_without_solutions_is_unreachable() -> None:
         ({"configurations": [[[0.0]], [[np.nan]], [], []]}, "configurations[1][0][0]: is not a"),
         ({"configurations": [[[0.0]], [0.0], [], []]}, "configurations[1]: has 1 dimensions"),
         ({"configurations": [[["a"]], [], [], []]}, "configurations[0]: is no array"),
+        (
+            {"configurations": [[[0.0]], [[90.0]], [], []]},
+            "configurations[1][0][0]: is 90: are the angles in degrees?",
+        ),
         ({"configurations": [[]] * 4}, "configurations: no vertex has any"),
         ({"faces": [[0, 1, 9]]}, "faces[0]"),
         ({"names": [["up"]] * 3}, "names: has 3 entries for 4 vertices"),

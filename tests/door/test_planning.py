@@ -16,6 +16,8 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.ways import Transfer, Ways
 
+OTHER_ARMS = {name for name in KINDS if name.endswith((".mod", ".src", ".ls"))}
+
 
 def test_a_scene_is_planned_and_judged(tmp_path: Path) -> None:
     stages: list[str] = []
@@ -32,10 +34,7 @@ def test_a_scene_is_planned_and_judged(tmp_path: Path) -> None:
     assert "judge: square: valid" in said
     # A judge that is asked anew, of the files alone, says the same.
     planned.save(tmp_path / "folder")
-    assert {file.name for file in (tmp_path / "folder").iterdir()} == set(KINDS) - {
-        "cellcolor.mod",
-        "cellcolor.src",
-    }
+    assert {file.name for file in (tmp_path / "folder").iterdir()} == set(KINDS) - OTHER_ARMS
     scene = scene.with_setup(scene.setup.varied(motion={"spacing_m": 0.05}))
     again = cellcolor.check(scene, tmp_path / "folder" / "trajectory.json")
     assert again.valid
@@ -136,3 +135,31 @@ def test_what_is_left_alone_is_not_driven_and_not_missed(tmp_path: Path) -> None
     assert "uncovered" in cellcolor.check(scene, trajectory).fault_counts
     surface = cellcolor.LabelledSurface.read(tmp_path / "folder" / "instance.surface.json")
     assert cellcolor.check(scene, trajectory, left_alone=surface).valid
+
+
+def test_the_feed_of_each_stroke_is_said_and_held(tmp_path: Path) -> None:
+    """In the summary, on the page, in the verdict; by a judge that has only the files, too."""
+    scene = shipped("square", 200)
+    keys = {"spacing_m": 0.05, "speed_m_per_s": 0.4, "transfer_speed_m_per_s": 0.2}
+    plain = cellcolor.plan(scene, **keys)
+    (feed,) = plain.verdict.feeds
+    assert plain.verdict.valid, plain.verdict.faults
+    assert feed.limited_by == "acceleration" and feed.joint in plain.trajectory.joint_names
+    assert 0.5 < feed.slow_share <= 1 and feed.mean_m_per_s < 0.3
+    assert f"stroke 0: mean feed {feed.mean_m_per_s:.3g} m/s of 0.4" in str(plain)
+    assert f"acceleration of {feed.joint}" in plain.page().decode()
+    even = cellcolor.plan(scene, even_feed=True, **keys)
+    (evenly,) = even.verdict.feeds
+    assert evenly.lowest_m_per_s > 0.85 * evenly.mean_m_per_s
+    assert feed.lowest_m_per_s < 0.6 * feed.mean_m_per_s
+    # Slower than asked for, and a fault where that is not allowed.
+    even.save(tmp_path / "folder")
+    for least, faults in ((0.9, {"feed": 1}), (0.5 * evenly.lowest_m_per_s / 0.4, {})):
+        setup = scene.setup.varied(motion=keys | {"least_feed": least})
+        again = cellcolor.check(scene.with_setup(setup), tmp_path / "folder" / "trajectory.json")
+        assert again.fault_counts == faults
+        assert again.feeds == even.verdict.feeds
+    setup = scene.setup.varied(motion=keys | {"transfer_speed_m_per_s": 0.1})
+    again = cellcolor.check(scene.with_setup(setup), even.trajectory)
+    assert set(again.fault_counts) == {"velocity"}
+    assert "between strokes" in again.faults[0].text

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import tomllib
 from pathlib import Path
 
@@ -17,8 +18,11 @@ from scipy.spatial.transform import Rotation
 from shipped import ROBOTS
 
 import cellcolor
-from cellcolor.door.starting import _mount, arm_of
+from cellcolor.data.candidate_table import VALID
+from cellcolor.door.starting import arm_of
+from cellcolor.door.starting_choices import mount_line
 from cellcolor.errors import InputError
+from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
@@ -92,7 +96,7 @@ def test_the_tool_is_turned_onto_the_last_axis(rpy: tuple[float, float, float], 
     assert usual in text
     turned = " ".join(map(repr, rpy))
     text = text.replace(usual, f'<origin xyz="{xyz}" rpy="{turned}"/>')
-    line = _mount(parse_urdf(text, Path("arm.urdf")), "tool0")
+    line = mount_line(parse_urdf(text, Path("arm.urdf")), "tool0")
     mount = tomllib.loads(line).get("mount_rpy_rad", [0.0, 0.0, 0.0])
     tool = (Rotation.from_euler("xyz", rpy) * Rotation.from_euler("xyz", mount)).apply([0, 0, 1])
     outward = -1.0 if xyz.startswith("-") else 1.0
@@ -102,7 +106,7 @@ def test_the_tool_is_turned_onto_the_last_axis(rpy: tuple[float, float, float], 
 def test_an_arm_with_an_offset_wrist_is_known(tmp_path: Path) -> None:
     file = tmp_path / "arm.urdf"
     file.write_text(dh_arms.urdf("hc10"))
-    assert json.loads(arm_of(file, None, "tip", tmp_path).keys["family"]) == "offset-wrist"
+    assert json.loads(arm_of(file, None, "tip", tmp_path, {}).keys["family"]) == "offset-wrist"
 
 
 def test_ready_to_plan(plate: Path, tmp_path: Path, capsys: Capture) -> None:
@@ -133,6 +137,10 @@ def test_what_cannot_be_used_is_one_line_and_nothing_is_written(
     scara = ROBOTS / "cobra600.urdf"
     faulty = tmp_path / "faulty.stl"
     faulty.write_text("solid\nendsolid\n")
+    long = tmp_path / "long.urdf"  # its lengths are in millimeters
+    numbers = r'<origin xyz="(\S+) (\S+) (\S+)"'
+    text = (ROBOTS / "ur5.urdf").read_text()
+    long.write_text(re.sub(numbers, r'<origin xyz="\1e3 \2e3 \3e3"', text))
     pinched = tmp_path / "pinched.obj"  # two triangles with one vertex in common
     corners = ("0 0 0", "90 0 0", "0 90 0", "-90 0 0", "0 -90 0")
     pinched.write_text("".join(f"v {at}\n" for at in corners) + "f 1 2 3\nf 1 4 5\n")
@@ -140,6 +148,7 @@ def test_what_cannot_be_used_is_one_line_and_nothing_is_written(
     for part, urdf, options, named in (
         (plate, scara, [], "cobra600.urdf"),
         (plate, tmp_path / "none.urdf", [], "none.urdf"),
+        (plate, long, [], "long.urdf: robot: the arm reaches"),
         (faulty, arm, [], "faulty.stl"),
         (pinched, arm, [], f"repair it first: cellcolor repair {pinched} -o pinched-repaired.obj"),
         (plate, arm, ["--unit", "m"], "the part is 160 x 120"),
@@ -172,6 +181,142 @@ def test_a_part_out_of_reach_is_refused_with_the_commonest_reason(tmp_path: Path
     assert not (tmp_path / "new").exists()
 
 
+def new(capsys: Capture, part: Path, arm: Path, folder: Path, *options: str) -> str:
+    """What the command says, with exit code 0."""
+    assert run("new", part, arm, "-o", folder, *options) == 0
+    return capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("options", "flipped", "faces"),
+    [
+        ((), False, "down"),
+        (("--outside", "flip"), True, "up"),
+        (("--outside", "toward"), True, "up"),
+        (("--outside", "away"), False, "down"),
+    ],
+)
+def test_a_sheet_wound_inside_out(
+    options: tuple[str, ...],
+    flipped: bool,
+    faces: str,
+    plate: Path,
+    tmp_path: Path,
+    capsys: Capture,
+) -> None:
+    sheet = tmp_path / "inverted.stl"
+    mesh = trimesh.load_mesh(plate)
+    mesh.invert()
+    mesh.export(sheet)
+    said = new(capsys, sheet, ROBOTS / "ur5.urdf", tmp_path / "new", *options)
+    assert f"its outside faces {faces}" in said
+    assert ("the object's outside faces down" in said) == (faces == "down")
+    scene = Scene.read(tmp_path / "new" / "scene.toml")
+    assert scene.object.flip == flipped
+    assert (prepare(scene).surface.normals[:, 2].mean() > 0) == (faces == "up")
+
+
+def shell(folder: Path) -> Path:
+    """A closed sheet of 200 x 200 x 2 mm."""
+    box = trimesh.creation.box((200, 200, 2))
+    box.export(folder / "shell.stl")
+    return folder / "shell.stl"
+
+
+@pytest.mark.parametrize(
+    ("options", "side"), [((), "up"), (("--outside", "away"), "down"), (("--cover", "all"), "both")]
+)
+def test_one_side_of_a_shell(
+    options: tuple[str, ...], side: str, tmp_path: Path, capsys: Capture
+) -> None:
+    said = new(capsys, shell(tmp_path), ROBOTS / "ur5.urdf", tmp_path / "new", *options)
+    assert f"faces {side}, is covered" in said or (side == "both" and "both sides" in said)
+    normals = prepare(Scene.read(tmp_path / "new" / "scene.toml")).surface.normals
+    along = {"up": [1], "down": [-1], "both": [-1, 1]}[side]
+    assert np.unique(np.round(normals[np.abs(normals[:, 2]) > 0.99, 2])).tolist() == along
+
+
+def test_the_largest_piece_of_a_block(tmp_path: Path, capsys: Capture) -> None:
+    trimesh.creation.box((200, 150, 100)).export(tmp_path / "block.stl")
+    said = new(
+        capsys, tmp_path / "block.stl", ROBOTS / "ur5.urdf", tmp_path / "new", "--cover", "largest"
+    )
+    assert "the largest piece between sharp edges is covered" in said
+    surface = prepare(Scene.read(tmp_path / "new" / "scene.toml")).surface
+    assert surface.mesh.areas.sum() == pytest.approx(0.2 * 0.15)
+
+
+def test_a_closed_part_has_its_outside(tmp_path: Path, capsys: Capture) -> None:
+    trimesh.creation.icosphere(2, 100).export(tmp_path / "ball.stl")
+    arm = ROBOTS / "ur5.urdf"
+    folder = tmp_path / "new"
+    assert run("new", tmp_path / "ball.stl", arm, "-o", folder, "--outside", "flip") == 2
+    assert "--outside: the part is closed" in capsys.readouterr().err
+    assert not folder.exists()
+
+
+@pytest.fixture
+def on_rail(tmp_path: Path) -> Path:
+    """The UR5 on a rail of 3 m along y."""
+    file = tmp_path / "rail.urdf"
+    rail = (
+        '<link name="rail"/><joint name="rail_joint" type="prismatic"><parent link="rail"/>'
+        '<child link="base_link"/><axis xyz="0 1 0"/>'
+        '<limit lower="-1.5" upper="1.5" velocity="1" effort="1000"/></joint>'
+    )
+    text = (ROBOTS / "ur5.urdf").read_text()
+    file.write_text(text.replace('<robot name="ur5">', f'<robot name="ur5">{rail}', 1))
+    assert "rail_joint" in file.read_text()
+    return file
+
+
+@pytest.mark.parametrize(("options", "at"), [((), 0.0), (("--fix", "rail_joint=0.4"), 0.4)])
+def test_an_arm_on_a_rail_stands_still(
+    options: tuple[str, ...],
+    at: float,
+    plate: Path,
+    on_rail: Path,
+    tmp_path: Path,
+    capsys: Capture,
+) -> None:
+    said = new(capsys, plate, on_rail, tmp_path / "new", *options)
+    assert f"rail_joint stands still at {at:g}" in said
+    scene = Scene.read(tmp_path / "new" / "scene.toml")
+    assert scene.setup.robot.fixed_joints == {"rail_joint": at}
+    vertices = prepare(scene).surface.vertices
+    assert (vertices.min(axis=0) + vertices.max(axis=0))[1] / 2 == pytest.approx(at)
+
+
+@pytest.mark.parametrize(
+    ("fix", "message"),
+    [
+        ("rail_joint=4", "4 is outside the joint's limits"),
+        ("rail=0.4", "robot.fixed_joints.rail: no such joint"),
+        ("rail_joint", "'rail_joint' is not JOINT=POSITION"),
+        ("rail_joint=nan", "'rail_joint=nan' is not JOINT=POSITION"),
+    ],
+)
+def test_a_joint_that_cannot_stand_there(
+    fix: str, message: str, plate: Path, on_rail: Path, tmp_path: Path, capsys: Capture
+) -> None:
+    assert run("new", plate, on_rail, "-o", tmp_path / "new", "--fix", fix) == 2
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "new").exists()
+
+
+def test_the_home_is_over_the_part_and_well_conditioned(plate: Path, tmp_path: Path) -> None:
+    made = cellcolor.new(plate, ROBOTS / "ur5e.urdf", tmp_path / "new")
+    prepared = prepare(made.scene)
+    home = np.array([motion_of(prepared).home_rad])
+    assert prepared.judge(home).reasons[0] == VALID  # which asks for conditioning too
+    poses = forward(prepared.robot, home)
+    off = np.linalg.norm(prepared.surface.vertices - poses.tip[0], axis=1).min()
+    assert off == pytest.approx(0.1, abs=0.01)
+    # Of the four postures that cover the plate, the one that does not lean back over the base.
+    assert np.abs(home).max() < np.pi / 2 + 0.1
+    assert any("100 mm over the part" in note for note in made.notes)
+
+
 def test_a_tool_of_ones_own(plate: Path, tmp_path: Path) -> None:
     tool = ROBOTS / "polishing_tool.urdf"
     made = cellcolor.new(
@@ -180,5 +325,11 @@ def test_a_tool_of_ones_own(plate: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "new" / "tool.urdf").exists()
     robot = Scene.read(made.scene).setup.robot
     assert (made.scene.parent / robot.tool_urdf).resolve() == tool
+    bare = tmp_path / "bare.urdf"
+    bare.write_text(re.sub("<inertial>.*?</inertial>", "", tool.read_text(), flags=re.DOTALL))
+    made = cellcolor.new(
+        plate, ROBOTS / "ur5.urdf", tmp_path / "bare", tool=bare, tip_link="tool_tip"
+    )
+    assert not Scene.read(made.scene).setup.constraints.force
     with pytest.raises(InputError, match="tip link"):
         cellcolor.new(plate, ROBOTS / "ur5.urdf", tmp_path / "other", tool=tool)

@@ -18,43 +18,45 @@ import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
+from read_programs import READERS, Program
 from scipy.interpolate import CubicHermiteSpline
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import Rotation, Slerp
 from shipped import ROBOTS
 from stand_in import stand_in
 
 from cellcolor.data.trajectory import Trajectory
-from cellcolor.exports.interface import ArmAxes, NotForThisArm, PlannedMotion
-from cellcolor.exports.programs import (
-    IRB_120,
-    KR6_R900,
-    WITHIN,
-    Axes,
-    krl,
-    rapid,
-    urscript,
-)
-from cellcolor.exports.registry import EXPORTS, exported
+from cellcolor.errors import InputError
+from cellcolor.exports.interface import ArmAxes, PlannedMotion
+from cellcolor.exports.programs import ASIDE, BESIDE, PRESSED, WITHIN
+from cellcolor.exports.registry import EXPORTS, PROGRAM, exported, why_not
 from cellcolor.exports.samples import stretches
 from cellcolor.exports.strokes import steady_frames
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
-from cellcolor.frontend.setup import Setup
+from cellcolor.frontend.setup import Controller, Setup
 from examples import examples
 
-NUMBERS = re.compile(r"-?\d+\.\d+")
-PROGRAMS = {"cellcolor.script": "ur5", "cellcolor.mod": "irb120", "cellcolor.src": "kr6"}
+PROGRAMS = {
+    "cellcolor.script": "ur5",
+    "cellcolor.mod": "irb120",
+    "cellcolor.src": "kr6",
+    "cellcolor.ls": "kr6",
+}
+FANUC_ON_KR6 = {"cellcolor.ls": {"controller": Controller(language="fanuc")}}
 
 
 @cache
 def arm(name: str) -> Robot:
+    return prepare_arm(setup_of(name)).robot
+
+
+def setup_of(name: str) -> Setup:
     (setup, *_) = sorted(ROBOTS.glob(f"{name}*.toml"), key=lambda path: len(path.name))
-    return prepare_arm(Setup.read(setup)).robot
+    return Setup.read(setup)
 
 
-def axes_of(robot: Robot) -> ArmAxes:
-    slides = bool(robot.slides.any())
-    return ArmAxes.of(robot.joint_names, robot.placement, robot.axis, slides)
+def axes_of(name: str) -> ArmAxes:
+    return ArmAxes.of(arm(name), setup_of(name).robot.flange_link)
 
 
 def driven(
@@ -73,81 +75,176 @@ def driven(
     )  # fmt: skip
     surface, segment_of = made.painted.surface, made.painted.segment_of
     return PlannedMotion(
-        surface, segment_of, ("#77AADD",), made.paths, trajectory, axes_of(robot), **keys
-    )
+        surface, segment_of, ("#77AADD",), made.paths, trajectory, axes_of(name),
+        **{"controller": setup_of(name).controller} | keys,
+    )  # fmt: skip
 
 
-def read_program(name: str, text: str) -> list[np.ndarray]:
-    """The joints (k, 6), rad, that each stretch goes to after its start."""
-    move = {
-        "cellcolor.script": r"servoj\(\[(.*?)\]",
-        "cellcolor.mod": r"MoveAbsJ \[\[(.*?)\]",
-        "cellcolor.src": r"PTP \{(.*?)\}",
-    }[name]
-    pieces = re.split(r"(?:def|PROC|DEF) stretch_\d+\(", text)[1:]
-    turned = [
-        np.array([[float(n) for n in NUMBERS.findall(own)] for own in re.findall(move, piece)])
-        for piece in pieces
-    ]
-    return turned if name == "cellcolor.script" else [np.radians(joints) for joints in turned]
+def read(name: str, planned: PlannedMotion) -> Program:
+    """A program, read by a grammar that has no part in writing it."""
+    return READERS[Path(name).suffix](exported(planned)[name].decode("ascii"))
+
+
+def judged(planned: PlannedMotion, name: str) -> list[Any]:
+    """The samples of each stretch that the program goes by."""
+    return stretches(planned.trajectory, 0.008 if name.endswith(".script") else None)
+
+
+def urdf_joints(planned: PlannedMotion, degrees: np.ndarray) -> np.ndarray:
+    """Joints of the URDF, rad, of what a controller shows: the table [controller] backwards."""
+    table = planned.controller or Controller(language="urscript")
+    own = np.array(degrees, dtype=float)
+    own[..., 2] += (table.j23_factor or (table.language == "fanuc")) * own[..., 1]
+    return np.radians((own - table.offsets_deg) * np.array(table.signs))
 
 
 @pytest.mark.parametrize(("name", "robot"), PROGRAMS.items())
-def test_a_program_goes_where_the_trajectory_goes(name: str, robot: str) -> None:
-    planned = driven(robot, unplanned=(20,))
-    text = exported(planned)[name].decode("ascii")
-    found = read_program(name, text)
-    judged = [slice(0, 21), slice(21, 60)]
-    assert len(found) == len(judged)
-    for joints, own in zip(found, judged, strict=True):
-        expected = planned.trajectory.joints[own]
-        assert np.allclose(joints[-1], expected[-1], atol=1e-6)
-        # Every point of a program lies on the judged motion, or as near as the program says.
-        near = float(re.findall(r"at most ([\d.e-]+) rad", text)[0])
-        dense = np.concatenate([np.linspace(a, b, 200) for a, b in pairwise(expected)])
-        for point in joints[:: max(1, len(joints) // 40)]:
-            assert np.abs(dense - point).max(axis=1).min() <= near + 5e-3
-    assert "stretch_2" in text and not re.search(r"^ *(stretch_2\(\)|stretch_2;)$", text, re.M)
+def test_between_its_points_a_program_is_the_judged_motion(name: str, robot: str) -> None:
+    """Straight for the joints over time, as far off the samples as the program says."""
+    planned = driven(robot, seed=3, unplanned=(20,), **FANUC_ON_KR6.get(name, {}))
+    found = read(name, planned)
+    assert found.called == [1] and len(found.stretches) == 2
+    for start, moves, own in zip(found.starts, found.stretches, judged(planned, name), strict=True):
+        assert np.allclose(urdf_joints(planned, start), own.joints[0], atol=1e-4)
+        places = urdf_joints(planned, np.array([start, *(move.joints for move in moves)]))
+        rows = [int(np.abs(own.joints - place).max(axis=1).argmin()) for place in places]
+        assert rows == sorted(rows) and rows[-1] == len(own.times) - 1
+        assert {0, *(np.flatnonzero(np.diff(own.contact)) + 1).tolist()} <= set(rows)
+        assert len(rows) < len(own.times)
+        for a, b in pairwise(rows):
+            times = own.times[a : b + 1]
+            straight = np.array(
+                [np.interp(times, times[[0, -1]], own.joints[[a, b], j]) for j in range(6)]
+            ).T
+            assert np.abs(straight - own.joints[a : b + 1]).max() <= WITHIN + 1e-6
+        if moves[0].seconds is not None:  # PTP of KRL has none
+            taken, passed = [move.seconds for move in moves], np.diff(own.times[rows])
+            assert np.allclose(taken, passed, atol=5e-4)
 
 
-@pytest.mark.parametrize("name", ["cellcolor.mod", "cellcolor.src"])
-def test_between_via_points_the_motion_is_the_judged_one(name: str) -> None:
-    planned = driven(PROGRAMS[name], seed=3)
-    (joints,) = read_program(name, exported(planned)[name].decode())
-    trajectory = planned.trajectory
-    rows = [
-        int(np.abs(trajectory.joints - point).max(axis=1).argmin())
-        for point in (trajectory.joints[0], *joints)
-    ]
-    assert rows == sorted(rows) and len(rows) < len(trajectory.times)
-    for a, b in pairwise(rows):
-        times = trajectory.times[a : b + 1]
-        straight = np.array(
-            [np.interp(times, times[[0, -1]], trajectory.joints[[a, b], j]) for j in range(6)]
-        ).T
-        assert np.abs(straight - trajectory.joints[a : b + 1]).max() <= WITHIN + 1e-6
-    assert {0, *(np.flatnonzero(np.diff(trajectory.contact)) + 1).tolist()} <= set(rows)
+@pytest.mark.parametrize(("name", "robot"), PROGRAMS.items())
+def test_between_linear_moves_the_tip_is_where_it_was_judged(name: str, robot: str) -> None:
+    """Position and turn over the length of the line, in the named tool and work object."""
+    stem, suffix = name.split(".")
+    part = pin.SE3(pin.rpy.rpyToMatrix(0.3, -0.2, 1.0), np.array([0.5, -0.1, 0.2])).homogeneous
+    planned = driven(robot, seed=3, part=part, force_n=9.0, **FANUC_ON_KR6.get(name, {}))
+    found = read(f"{stem}_linear.{suffix}", planned)
+    axes, (own,), (moves,) = planned.axes, judged(planned, name), found.stretches
+    assert np.allclose(axes.flange @ found.tool, axes.tip, atol=2e-6)
+    # Where the part is seen from: a controller of Universal Robots has its x axis backward.
+    base = np.diag([-1.0, -1, 1, 1]) if suffix == "script" else np.eye(4)
+    assert np.allclose(base @ found.part, part, atol=2e-5)
+    tips = np.array([tip_of(arm(robot), joints) for joints in own.joints])
+    stroke = np.cumsum(np.diff(own.contact, prepend=False) & own.contact)
+    lines: list[list[np.ndarray]] = []
+    for before, move in pairwise([m for m in moves if m.kind in ("joint", "linear")]):
+        if move.kind == "linear":
+            if before.kind == "joint":
+                lines.append([tip_of(arm(robot), urdf_joints(planned, before.joints))])
+                assert np.allclose(lines[-1][0], tips[own.contact & (stroke == len(lines))][0])
+            lines[-1].append(
+                base @ found.part @ move.pose
+                if move.pose is not None
+                else tip_of(arm(robot), urdf_joints(planned, move.joints))
+            )
+    assert len(lines) == stroke.max() == 2
+    for number, line in enumerate(lines, start=1):
+        rows = tips[own.contact & (stroke == number)]
+        assert len(line) > 2
+        at = [int(np.linalg.norm(rows[:, :3, 3] - p[:3, 3], axis=1).argmin()) for p in line]
+        assert at[0] == 0 and at[-1] == len(rows) - 1
+        for (a, first), (b, last) in pairwise(zip(at, line, strict=True)):
+            steps = np.linalg.norm(np.diff(rows[a : b + 1, :3, 3], axis=0), axis=1)
+            share = np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
+            ends = Rotation.from_matrix([first[:3, :3], last[:3, :3]])
+            turns = Slerp([0, 1], ends)(np.minimum(share, 1.0))
+            places = first[:3, 3] + share[:, None] * (last[:3, 3] - first[:3, 3])
+            assert np.abs((places - rows[a : b + 1, :3, 3]) @ part[:3, :3]).max() <= BESIDE + 1e-6
+            off = (turns.inv() * Rotation.from_matrix(rows[a : b + 1, :3, :3])).magnitude()
+            assert off.max() <= 2 * ASIDE
 
 
-def test_rapid_says_how_long_each_move_takes() -> None:
-    planned = driven("irb120")
-    seconds = [float(t) for t in re.findall(r"\\T:=([\d.]+)", rapid(planned).decode())]
-    trajectory = planned.trajectory
-    assert sum(seconds) == pytest.approx(trajectory.times[-1] - trajectory.times[0], abs=1e-3)
+def tip_of(robot: Robot, joints: np.ndarray) -> np.ndarray:
+    """(4, 4), by Pinocchio."""
+    data = robot.model.createData()
+    pin.forwardKinematics(robot.model, data, joints)
+    return data.oMi[6].homogeneous @ robot.tip
+
+
+def on_the_wok(**keys: object) -> PlannedMotion:
+    """Over the shipped wok, whose normal turns far in a stroke."""
+    made = stand_in()
+    setup = made.prepared.setup
+    axes = ArmAxes.of(made.prepared.robot, setup.robot.flange_link)
+    return PlannedMotion(
+        made.painted.surface, made.painted.segment_of, ("#77AADD",) * 2, made.paths,
+        replace(made.trajectory, unplanned=()), axes, **{"force_n": 20.0} | keys,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["cellcolor.script", "cellcolor_linear.script"])
+def test_the_force_pulls_against_the_surface_along_the_whole_stroke(name: str) -> None:
+    """The interpreter's rule: the task frame of ``force_mode`` stands still until the next call."""
+    planned = on_the_wok()
+    robot, (own,) = stand_in().prepared.robot, judged(planned, name)
+    found = read(name, planned)
+    base = np.diag([-1.0, -1, 1, 1]) @ found.part
+    pull, here, off, begun, turned = None, None, [], None, []
+    for move in found.stretches[0]:
+        if move.kind == "press":
+            pull = here[:3, 2]  # +z of the actual pose of the tip
+            begun = pull if begun is None else begun
+        elif move.kind == "release":
+            pull = begun = None
+        else:
+            posed = move.pose is not None
+            here = base @ move.pose if posed else tip_of(robot, np.radians(move.joints))
+            if pull is not None:
+                row = np.linalg.norm(own.points - here[:3, 3], axis=1)[own.contact].argmin()
+                normal = own.normals[own.contact][row]
+                off.append(np.degrees(np.arccos(np.clip(-pull @ normal, -1, 1))))
+                turned.append(np.degrees(np.arccos(np.clip(-begun @ normal, -1, 1))))
+    assert pull is None  # released at the end
+    assert max(turned) > 60  # with one call a stroke it would have pulled that far aside
+    assert max(off) <= np.degrees(PRESSED) + 1
+
+
+@pytest.mark.parametrize("name", ["cellcolor.script", "cellcolor_linear.script"])
+def test_without_a_force_none_is_pressed(name: str) -> None:
+    text = exported(on_the_wok(force_n=0.0))[name].decode()
+    assert "force_mode" not in text and "pressing" not in text
 
 
 def test_krl_is_never_faster_than_planned_by_more_than_its_smallest_speed() -> None:
     planned = driven("kr6", step_s=0.05)
-    text, top = krl(planned).decode(), np.array([360, 300, 360, 381, 388, 615])
-    percent, before = 0, np.degrees(planned.trajectory.joints[0])
-    for line in text.splitlines():
-        if found := re.fullmatch(r" +speed_of_axes\((\d+)\)", line):
-            percent = int(found[1])
-        elif "PTP {" in line:
-            angles = np.array([float(n) for n in NUMBERS.findall(line)])
-            wanted = 100 * (np.abs(angles - before) / 0.05 / top).max()
-            assert percent == max(1, min(100, int(wanted + 1e-3))) or percent == int(wanted)
-            before = angles
+    found, top = read("cellcolor.src", planned), np.array([360, 300, 360, 381, 388, 615])
+    before = found.starts[0]
+    for move in found.stretches[0]:
+        wanted = (np.abs(move.joints - before) / 0.05 / top).max()
+        assert move.share <= max(0.01, wanted + 1e-4)
+        assert move.share >= min(1.0, wanted) - 0.01 - 1e-4
+        before = move.joints
+
+
+# Points (m) and directions of the axes in the base frame when the controller shows zero degrees on
+# all of them. They are the makers', as ros-industrial has them in kuka_kr6_support
+# (kr6r900sixx_macro.xacro) and abb_irb120_support (irb120_3_58_macro.xacro).
+KR6_R900 = (
+    ((0.0, 0.0, 0.4), (0, 0, -1)),
+    ((0.025, 0.0, 0.4), (0, 1, 0)),
+    ((0.48, 0.0, 0.4), (0, 1, 0)),
+    ((0.48, 0.0, 0.435), (-1, 0, 0)),
+    ((0.9, 0.0, 0.435), (0, 1, 0)),
+    ((0.98, 0.0, 0.435), (-1, 0, 0)),
+)
+IRB_120 = (
+    ((0.0, 0.0, 0.29), (0, 0, 1)),
+    ((0.0, 0.0, 0.29), (0, 1, 0)),
+    ((0.0, 0.0, 0.56), (0, 1, 0)),
+    ((0.0, 0.0, 0.63), (1, 0, 0)),
+    ((0.302, 0.0, 0.63), (0, 1, 0)),
+    ((0.374, 0.0, 0.63), (1, 0, 0)),
+)
 
 
 @pytest.mark.parametrize(
@@ -155,21 +252,23 @@ def test_krl_is_never_faster_than_planned_by_more_than_its_smallest_speed() -> N
     [("cellcolor.src", "kr6", KR6_R900), ("cellcolor.mod", "irb120", IRB_120)],
 )
 def test_a_controller_s_degrees_put_the_wrist_where_the_urdf_has_it(
-    name: str, robot: str, table: Axes
+    name: str, robot: str, table: Any
 ) -> None:
     """The maker's axes turned by the degrees in the program, against Pinocchio on the URDF."""
     planned = driven(robot, seed=7, step_s=0.1)
-    (joints,) = read_program(name, exported(planned)[name].decode())
+    moves = read(name, planned).stretches[0]
     model = arm(robot).model
     data = model.createData()
-    for angles in joints[::5]:
-        pin.forwardKinematics(model, data, angles)
+    (own,) = stretches(planned.trajectory, 0.1)
+    assert len(moves) == len(own.joints) - 1
+    for move, joints in list(zip(moves, own.joints[1:], strict=True))[::5]:
+        pin.forwardKinematics(model, data, joints)
         turn, shift = np.eye(3), np.zeros(3)
-        for (point, direction), angle in zip(table, angles, strict=True):
+        for (point, direction), angle in zip(table, np.radians(move.joints), strict=True):
             # The axis, moved by those before it.
             center, axis = turn @ np.array(point) + shift, turn @ np.array(direction)
-            own = Rotation.from_rotvec(angle * axis).as_matrix()
-            turn, shift = own @ turn, center + own @ (shift - center)
+            turned = Rotation.from_rotvec(angle * axis).as_matrix()
+            turn, shift = turned @ turn, center + turned @ (shift - center)
         last = np.array(table[5][0])
         assert np.allclose(turn @ last + shift, data.oMi[6].translation, atol=1e-6)
         assert np.allclose(turn, data.oMi[6].rotation, atol=1e-6)
@@ -178,14 +277,14 @@ def test_a_controller_s_degrees_put_the_wrist_where_the_urdf_has_it(
 def test_ur_joints_are_counted_as_the_controller_counts_them() -> None:
     """The maker's Denavit-Hartenberg constants, which its controllers compute with."""
     planned = driven("ur5", step_s=0.1)
-    (joints,) = read_program("cellcolor.script", urscript(planned).decode())
     model = arm("ur5").model
     data = model.createData()
     constants = [
         (0, 0.089159, np.pi / 2), (-0.425, 0, 0), (-0.39225, 0, 0),
         (0, 0.10915, np.pi / 2), (0, 0.09465, -np.pi / 2), (0, 0.0823, 0),
     ]  # fmt: skip
-    for angles in joints[::5]:
+    for move in read("cellcolor.script", planned).stretches[0][::5]:
+        angles = np.radians(move.joints)
         pin.forwardKinematics(model, data, angles)
         pose = pin.SE3.Identity()
         for (a, d, alpha), angle in zip(constants, angles, strict=True):
@@ -200,42 +299,102 @@ def test_ur_joints_are_counted_as_the_controller_counts_them() -> None:
         assert np.linalg.norm(off - (off @ axis) * axis) < 1e-6
 
 
+@given(
+    st.tuples(*[st.sampled_from([-1, 1])] * 6),
+    st.tuples(*[st.integers(-180, 180).map(float)] * 6),
+    st.sampled_from([-1, 0, 1]),
+)
+@examples(5)
+def test_signs_offsets_and_coupling_are_those_of_the_setup(
+    signs: Any, offsets: Any, coupling: Any
+) -> None:
+    table = Controller(language="fanuc", signs=signs, offsets_deg=offsets, j23_factor=coupling)
+    planned = driven("kr6", controller=table, step_s=0.5)
+    found = read("cellcolor.ls", planned).stretches[0][-1].joints
+    zero = np.degrees(planned.trajectory.joints[-1]) * signs + offsets
+    assert np.allclose(np.delete(found, 2), np.delete(zero, 2), atol=1e-4)
+    assert found[2] == pytest.approx(zero[2] - coupling * zero[1], abs=1e-4)
+
+
+@pytest.mark.parametrize("rpy", ["3.14159265358979 0 0", "0 1.5707963267949 0", "0.4 -0.3 2.0"])
+def test_joint_angles_do_not_depend_on_the_mounting(rpy: str) -> None:
+    """A UR5 that hangs, on a wall, askew: the same angles, and a remark on gravity."""
+    (setup,) = ROBOTS.glob("ur5_polishing.toml")
+    text = (ROBOTS / "ur5.urdf").read_text()
+    mount = (
+        '<link name="world"/><joint name="mount" type="fixed"><parent link="world"/>'
+        f'<child link="base_link"/><origin xyz="0.1 0.2 1.5" rpy="{rpy}"/></joint></robot>'
+    )
+    hung = Setup.read(setup).varied(robot={"arm_urdf": text.replace("</robot>", mount)})
+    axes = ArmAxes.of(prepare_arm(hung).robot, hung.robot.flange_link)
+    upright = driven("ur5")
+    turned = replace(upright, axes=axes, part=axes.base)
+    found, expected = read("cellcolor.script", turned), read("cellcolor.script", upright)
+    for one, other in zip(found.stretches[0], expected.stretches[0], strict=True):
+        assert np.array_equal(one.joints, other.joints)
+    assert np.allclose(found.part, expected.part, atol=1e-6)  # in the base's frame
+    roll, pitch, yaw = (float(one) for one in rpy.split())
+    down = pin.rpy.rpyToMatrix(roll, pitch, yaw).T @ [0, 0, -1.0]
+    said = re.findall(
+        r"gravity points along \((.*?)\)", exported(turned)["cellcolor.script"].decode()
+    )
+    assert np.allclose(np.array(said[0].split(", "), dtype=float), down, atol=1e-3)
+
+
 ARMS = ["ur5", "ur5e_calibrated", "ur3e", "ur10e", "ur16e", "irb120", "kr6", "tx2_60"]
-OWN = {"irb120": "cellcolor.mod", "kr6": "cellcolor.src"}
+OWN = {"irb120": ".mod", "kr6": ".src"}
 
 
 @pytest.mark.parametrize("name", [*ARMS, "cobra600", "kr6_r700_z200"])
 def test_an_arm_gets_the_program_of_its_controller_and_no_other(name: str) -> None:
-    wanted = OWN.get(name, "cellcolor.script" if name.startswith("ur") else None)
+    wanted = OWN.get(name, ".script" if name.startswith("ur") else None)
     planned = driven(name)
-    assert {program for program in PROGRAMS if program in exported(planned)} == {wanted} - {None}
+    names = {f"cellcolor{wanted}", f"cellcolor_linear{wanted}"} if wanted else set()
+    assert {one for one in exported(planned) if one.startswith("cellcolor")} == names
+    assert (PROGRAM in why_not(planned)) is not bool(wanted)
 
 
 @pytest.mark.parametrize(
-    ("make", "robot", "change", "reason"),
+    ("robot", "change", "reason"),
     [
-        (krl, "kr6", "turned", "axis 2 does not turn about"),
-        (krl, "kr6", "moved", "axis 3 is 20 mm from that of the KUKA KR 6 R900"),
-        (rapid, "irb120", "turned", "axis 2 does not turn about"),
-        (rapid, "kr6", "", "axis 1"),
-        (urscript, "ur5", "turned", "axis 2 does not turn about"),
-        (urscript, "irb120", "", "not named as those of Universal Robots"),
-        (krl, "kr6", "unknown", "its axes are not known"),
-        (krl, "cobra600", "", "six joints that turn"),
+        ("ur5", "turned", "does not turn as"),
+        ("ur5", "moved", "not stretched out along x"),
+        ("irb120", "no table", "the setup names no controller"),
+        ("irb120", "urscript", "not named as those of Universal Robots"),
+        ("cobra600", "", "six joints that turn"),
+        ("ur5", "unknown", "six joints that turn"),
     ],
 )
-def test_another_arm_is_refused_with_the_reason(
-    make: Any, robot: str, change: str, reason: str
-) -> None:
-    """As a URDF with another zero or another sense of rotation would be."""
-    axes = axes_of(arm(robot))
+def test_where_there_is_no_program_the_reason_is_said(robot: str, change: str, reason: str) -> None:
+    """As for a URDF with another zero or another sense of rotation."""
+    axes, planned = axes_of(robot), driven(robot)
     if change == "turned":
         axes = replace(axes, directions=axes.directions * np.array([1, -1, 1, 1, 1, 1])[:, None])
     if change == "moved":
-        axes = replace(axes, points=axes.points + np.outer(np.arange(6) == 2, [0.0, 0.0, 0.02]))
-    planned = replace(driven("ur5"), axes=None if change == "unknown" else axes)
-    with pytest.raises(NotForThisArm, match=reason):
-        make(planned)
+        axes = replace(axes, points=axes.points * [-1, 1, 1])
+    table = Controller(language="urscript") if change == "urscript" else planned.controller
+    planned = replace(
+        planned,
+        axes=None if change == "unknown" else axes,
+        controller=None if change == "no table" else table,
+    )
+    assert reason in why_not(planned)[PROGRAM]
+    assert not [name for name in exported(planned) if name.startswith("cellcolor")]
+
+
+@pytest.mark.parametrize(
+    ("keys", "fault"),
+    [
+        ({"language": "karel"}, "language"),
+        ({"language": "krl", "signs": (1, 1, 1, 1, 1, 2)}, "signs"),
+        ({"language": "krl", "offsets_deg": (0.0,) * 5}, "offsets_deg"),
+        ({"language": "krl", "tool": "my_tool"}, "a number from 1 to 32"),
+        ({"language": "rapid", "work_object": "a b"}, "a name of letters"),
+    ],
+)
+def test_a_table_that_cannot_be_used_is_refused(keys: dict[str, Any], fault: str) -> None:
+    with pytest.raises(InputError, match=fault):
+        Controller(**keys)
 
 
 @given(st.integers(0, 10**6), st.sampled_from([0.004, 0.0133, 0.1]))
@@ -319,10 +478,11 @@ def test_only_own_files_are_overwritten(name: str, tmp_path: Path) -> None:
     from cellcolor.errors import InputError
     from cellcolor.files.writing import Output, check_output, write
 
-    robot = PROGRAMS.get(name, "ur5")
+    plain = name.replace("_linear", "")
+    planned = driven(PROGRAMS.get(plain, "ur5"), **FANUC_ON_KR6.get(plain, {}))
     path = tmp_path / name
-    made = exported(driven(robot))[name]
-    assert made == exported(driven(robot))[name]
+    made = exported(planned)[name]
+    assert made == exported(planned)[name]
     write([Output(path, EXPORTS[name].kind, [made])])
     check_output(path, EXPORTS[name].kind)
     for export in EXPORTS.values():

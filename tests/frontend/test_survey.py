@@ -18,7 +18,8 @@ from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import disc_mesh, grid_mesh, rectangle, spherical_cap
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.report import survey
+from cellcolor.frontend.report import survey, survey_of
+from cellcolor.frontend.scene import Scene
 from examples import examples
 
 
@@ -80,7 +81,7 @@ def test_domes_before_the_robot(
 def test_no_shipped_scene_is_warned_of(scene: Path) -> None:
     """Half a pipe shows the shoulder mostly its inside."""
     prepared = prepare(scene)
-    assert survey(prepared.surface, prepared.kinematics.viewpoints).warnings == ()
+    assert survey_of(prepared).warnings == ()
 
 
 def test_what_cannot_be_told(geometry: UrGeometry) -> None:
@@ -106,3 +107,11 @@ def test_report_and_commands_warn(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert f"cellcolor: {path}: warning: the robot sees 100 %" in capsys.readouterr().err
     main(["build", str(path), "-o", str(tmp_path / "out.json")])
     assert second in capsys.readouterr().out
+
+
+def test_an_open_part_that_faces_down_is_said() -> None:
+    """Overhead the robot sees its front, and still it may be the wrong side."""
+    plate = Scene.read(SCENES / "square.toml")
+    for turn, warned in ((0.0, 0), (np.pi, 1), (np.pi / 2, 0)):
+        prepared = prepare(plate.moved(position_m=(0.4, 0.0, 0.6), rpy_rad=(turn, 0.0, 0.0)))
+        assert sum("faces down" in text for text in survey_of(prepared).warnings) == warned

@@ -13,7 +13,7 @@ from scipy.optimize import linprog
 
 from cellcolor.arrays import Array
 from cellcolor.data.trajectory_verdict import FaultKind
-from cellcolor.motion.timing import Speeds, _swept, timed
+from cellcolor.motion.timing import Speeds, _swept, evenly_timed, timed
 from examples import examples
 
 
@@ -137,3 +137,30 @@ def test_the_judge_finds_no_fault_in_times_of_steps_of_any_length(
     steps = rng.uniform(-size, size, (count, 2)) * rng.choice([0.1, 1.0], (count, 1))
     joints, speeds = np.cumsum(steps, axis=0), Speeds(np.full(2, 2.0), np.array([5.0, 3.0]))
     assert not faults(joints, timed(joints, speeds), speeds)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_an_even_stroke_keeps_its_feed_but_at_its_ends(seed: int) -> None:
+    """One joint has to swing: at full speed the feed drops there."""
+    random = np.random.default_rng(seed)
+    way = np.linspace(0.0, 1.0, 1001)
+    inside = np.clip((way - 0.4) / 0.3, 0.0, 1.0)
+    swing = 0.1 * np.sin(np.pi * inside) ** 2 * np.sin(2 * np.pi * random.uniform(3, 8) * way)
+    joints, points = np.column_stack([way, swing]), np.column_stack([way, way * 0, way * 0])
+    speeds, window = Speeds(np.array([3.0, 3.0]), np.array([8.0, 8.0])), 0.03
+
+    def feeds(times: Array) -> Array:
+        """Over each stretch as long as the window, without the first and the last one."""
+        begins = np.arange(window, 1.0 - 2 * window, 0.001)
+        passed = np.interp(begins + window, way, times) - np.interp(begins, way, times)
+        return np.asarray(window / passed)
+
+    plain = feeds(timed(joints, speeds, points, 1.0))
+    assert plain.min() < 0.8 * plain.max()
+    even = feeds(evenly_timed(joints, speeds, points, 1.0, window))
+    assert even.min() > 0.89 * even.max()
+    assert even.max() > 0.95 * plain.min()  # no slower than the slowest place asks for
+    # What is even already is left as it is.
+    assert np.array_equal(
+        evenly_timed(joints, speeds, points, 0.05, window), timed(joints, speeds, points, 0.05)
+    )

@@ -59,6 +59,14 @@ def wait_for_time(page: Any, seconds: float) -> None:
     raise AssertionError(f"still at {page.input_value('#time')} s after half a minute")
 
 
+def test_warnings_of_the_scene_are_on_the_page() -> None:
+    built = report().built
+    for notes in ((), ("the tool points back",)):
+        noted = replace(built, report=replace(built.report, notes=notes))
+        cards = [card for card in cards_of(report(built=noted)) if card.title == "Warnings"]
+        assert [card.paragraphs for card in cards] == ([notes] if notes else [])
+
+
 def test_the_page_is_known_again_and_the_same_each_time(page_file: Path) -> None:
     page = page_file.read_bytes()
     assert HTML.pattern.match(page[:4096])
@@ -183,7 +191,8 @@ def test_faults_are_found_by_a_click_and_the_space_bar_plays(tmp_path: Path) -> 
         return float(page.input_value("#time")) + float(times[0])
 
     with opened(file, DESKTOP) as (page, faults):
-        rows = page.locator("tr[data-time]")
+        card = page.locator(".card", has_text="Verdict of the judge")
+        rows = card.locator("tr[data-time]")
         assert rows.count() == 2  # the third has no time
         rows.nth(1).click()
         assert at(page) == pytest.approx(times[-1], abs=1e-3)

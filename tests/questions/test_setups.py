@@ -20,9 +20,10 @@ from shipped import shipped
 import cellcolor
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import blobs
-from cellcolor.questions import choosing_set_ups
+from cellcolor.questions import choosing_set_ups, setting_up
 from cellcolor.questions.choosing_set_ups import choose
 from cellcolor.solvers.interface import Options
 from examples import examples
@@ -249,3 +250,21 @@ def test_the_command_takes_what_place_prints(
     assert (row["covered_share"], row["proved_for_surface"]) == (1.0, True)
     assert [one["rpy_rad"] for one in row["setups"]] == [[0, 0, 0], list(TURNED[3:])]
     assert row["alone"]["segments"] == 3
+
+
+def test_candidates_that_the_time_limit_left_unbuilt_are_said(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    built, scene = setting_up._built, shipped("wok", 100)
+    made: list[object] = []
+
+    def one_only(*given: object) -> LabelledSurface:
+        if made:
+            raise OutOfTime
+        made.append(given)
+        return built(*given)
+
+    monkeypatch.setattr(setting_up, "_built", one_only)
+    found = cellcolor.setups(scene, at=[TURNED, (0.4, 0.0, -0.04, 0.0, 0.0, 0.0)]).answer
+    assert (found.candidates, found.left, found.complete) == (1, 2, False)
+    assert "the time limit left 2 candidates unbuilt" in str(found)

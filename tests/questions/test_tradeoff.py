@@ -9,13 +9,17 @@ from commands import json_lines, run
 from exhaustive_minima import front_by_subsets
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from library import INSTANCES
 from meshes import drawn
 from vertex_minima import front_by_vertices
 
 import cellcolor
 from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.instance import Instance
+from cellcolor.deadline import OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import blobs, planar_graph
+from cellcolor.questions import tradeoff
 from cellcolor.questions.front import Front
 from cellcolor.questions.tradeoff import front_of
 from cellcolor.solvers.interface import Options
@@ -262,3 +266,16 @@ def test_the_command_prints_a_row_for_each_point(
     file.write_text(STRIP.without_vertices(np.ones(len(STRIP.vertices), dtype=bool)).to_json())
     assert run("tradeoff", file) == 3
     assert "NOTHING CAN BE COVERED" in capsys.readouterr().err
+
+
+def test_a_front_that_the_time_limit_cut_short_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    graph = Instance.read(INSTANCES / "scenes" / "wok.json")
+    assert front_of(graph, Options()).complete
+
+    def late(*_: object) -> None:
+        raise OutOfTime
+
+    monkeypatch.setattr(tradeoff._Asked, "most_of", late)
+    front = front_of(graph, Options())
+    assert not front.complete
+    assert "the time limit came before everything was tried" in str(front)

@@ -46,7 +46,7 @@ def test_a_rival_finds_what_the_depth_first_search_finds(solver: str, seed: int)
 
 def test_too_many_strands() -> None:
     with pytest.raises(TooLarge, match="the seams need"):
-        Seamed(hub_with_loops(0, 30, 2, 2))
+        Seamed(hub_with_loops(0, 150, 2, 2))
 
 
 def test_an_instance_without_seams_stays_as_it_is() -> None:

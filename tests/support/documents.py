@@ -146,6 +146,20 @@ VERDICT: Document = {
         "length_times_spacing_per_area": 0.5,
     },
     "notes": ["The setup has no [motion], so accelerations are not judged."],
+    "feeds": [
+        {
+            "segment": 0,
+            "time": 0.5,
+            "seconds": 2.0,
+            "asked_m_per_s": 0.25,
+            "mean_m_per_s": 0.125,
+            "lowest_m_per_s": 0.0625,
+            "window_m": 0.03125,
+            "slow_share": 0.75,
+            "joint": "pan",
+            "limited_by": "acceleration",
+        }
+    ],
 }
 
 PLAN_VERDICT: Document = {

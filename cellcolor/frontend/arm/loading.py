@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Mask
 from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.assembly import Vector, fix_joints, mount, pinocchio_text
 from cellcolor.frontend.arm.body import Body, Shapes, place_shapes
 from cellcolor.frontend.arm.robot import FollowingFrame, Robot
+from cellcolor.frontend.arm.tool_sense import notes_on_tool
 from cellcolor.frontend.arm.urdf import (
     CONTINUOUS,
     PRISMATIC,
@@ -24,6 +25,7 @@ from cellcolor.frontend.arm.urdf import (
     load_urdf,
 )
 
+_FASTEST = 60.0  # rad/s
 _FIX = "give its position under [robot.fixed_joints], as {} = 0.0"
 _NO_FORCE = "or leave the force constraint out: force = false under [constraints] of the setup"
 _WAY_OUT = (
@@ -107,13 +109,15 @@ def load_robot(
         replace(body, joint=_carrier(whole, body.link, number, body.joint)) for body in bodies
     )
     tip = model.frames[model.getFrameId(tip_link, pin.FrameType.BODY)]
+    axes = _axes(model)
     names = tuple(model.names[1:])
+    slides = np.array([whole.kinds[name] == PRISMATIC for name in names], dtype=bool)
     endless = np.array([whole.kinds[name] == CONTINUOUS for name in names], dtype=bool)
     return Robot(
         files=(arm_file, tool_file),
         placement=np.array([model.jointPlacements[i].homogeneous for i in range(1, joints + 1)]),
-        axis=_axes(model),
-        slides=np.array([whole.kinds[name] == PRISMATIC for name in names], dtype=bool),
+        axis=axes,
+        slides=slides,
         lower=np.where(endless & (lower <= limits[0]), -np.inf, lower),
         upper=np.where(endless & (upper >= limits[1]), np.inf, upper),
         velocity=_where_given(model.velocityLimit),
@@ -124,7 +128,9 @@ def load_robot(
         bodies=bodies,
         tested_pairs=_tested_pairs(whole, bodies, may_touch),
         joint_names=names,
-        warnings=_warnings(whole),
+        warnings=_warnings(whole)
+        + _in_degrees(names, slides, model.velocityLimit)
+        + notes_on_tool(model, tool.root, tip_link, axes),
         model=model,
         geometry=geometry,
         stand_ins=stand_ins,
@@ -209,6 +215,18 @@ def _warnings(urdf: Urdf) -> tuple[str, ...]:
     if urdf.shapeless:
         return (f"no collision shape, so hits nothing: {', '.join(map(repr, urdf.shapeless))}",)
     return ()
+
+
+def _in_degrees(names: tuple[str, ...], slides: Mask, velocity: Array) -> tuple[str, ...]:
+    """A warning of joints that turn faster than any: their velocity is in degrees."""
+    found = [
+        f"{name!r} {limit:g} rad/s"
+        for name, limit in zip(names, np.where(slides, 0.0, velocity).tolist(), strict=True)
+        if limit > _FASTEST
+    ]
+    if not found:
+        return ()
+    return (f"faster than arms turn, so probably degrees per second: {', '.join(found)}",)
 
 
 def _axes(model: pin.Model) -> Array:

@@ -157,6 +157,39 @@ class Robot:
         """The joints that are not prismatic."""
         return np.flatnonzero(~self.slides)
 
+    def frame_of(self, link: str) -> Array:
+        """(4, 4) pose of a link in the frame of the joint that moves it.
+
+        Raises:
+            KeyError: there is no such link.
+        """
+        if not self.model.existFrame(link, pin.FrameType.BODY):
+            raise KeyError(link)
+        frame = self.model.frames[self.model.getFrameId(link, pin.FrameType.BODY)]
+        return np.array(frame.placement.homogeneous)
+
+    def base_frame(self, link: str | None) -> Array:
+        """(4, 4) pose in the world of a link that no joint moves.
+
+        Args:
+            link: None for ``base`` if there is such a link (REP 199), else what the first joint is
+                on.
+
+        Raises:
+            KeyError: no link of this name stands still.
+        """
+        standing = [
+            frame.name
+            for frame in self.model.frames
+            if frame.type == pin.FrameType.BODY and frame.parentJoint == 0
+        ]
+        if link is None:
+            joint = self.model.frames[self.model.getFrameId(self.joint_names[0])]
+            link = "base" if "base" in standing else self.model.frames[joint.parentFrame].name
+        elif link not in standing:
+            raise KeyError(link)
+        return self.frame_of(link)
+
     @property
     def has_solids(self) -> bool:
         """Whether bodies with flat faces are among the collision shapes."""

@@ -15,6 +15,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from cellcolor.data.wording import beyond_turns, looks_like_degrees, looks_like_millimeters
 from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import read_text
 
@@ -63,7 +64,9 @@ def _check_origin(field: str, element: ET.Element) -> None:
     origin = element.find("origin")
     if origin is not None:
         for attribute in ("xyz", "rpy"):
-            _triple(f"{field}.origin.{attribute}", origin.get(attribute, "0 0 0"))
+            values = _triple(f"{field}.origin.{attribute}", origin.get(attribute, "0 0 0"))
+            if attribute == "rpy" and beyond_turns(most := max(values, key=abs), 1):
+                raise InputError(None, f"{field}.origin.rpy", looks_like_degrees(most))
 
 
 _SIZES = {"cylinder": ("radius", "length"), "sphere": ("radius",), "capsule": ("radius", "length")}
@@ -116,6 +119,8 @@ def _shape(field: str, collision: ET.Element) -> LinkShape:
     return LinkShape(kind, tuple(sizes))
 
 
+_LONGEST = 60.0  # m; of a rail
+_MOST_DEGREES = 3600  # of a joint's limit; beyond, as 999999, it means that there is none
 CONTINUOUS, PRISMATIC = "continuous", "prismatic"
 _MOVING = ("revolute", CONTINUOUS, PRISMATIC)
 _THING = ("inertial", "visual")  # what a link that is more than a frame has
@@ -230,6 +235,7 @@ def parse_urdf(text: str, file: Path, folder: Path = Path()) -> Urdf:
         if xml.tag != "robot":
             raise InputError(None, xml.tag, "the outermost element of a URDF is <robot>")
         followers = _followers(xml)
+        _soften(xml)
     return check_urdf(file, folder, xml, tuple(followers), followers)
 
 
@@ -261,6 +267,27 @@ def _followers(xml: ET.Element) -> dict[str, Follower]:
             joint.remove(mimic)
             joint.set("type", "fixed")
     return found
+
+
+def _soften(xml: ET.Element) -> None:
+    """Narrow the limits of joints to their soft ones, beyond which a controller stops them.
+
+    Soft limits that are missing, or leave no range, are none: both are zero where nobody wrote any.
+    """
+    for joint in xml.findall("joint"):
+        soft, limit = joint.find("safety_controller"), joint.find("limit")
+        if soft is None or limit is None or joint.get("type") == CONTINUOUS:
+            continue
+        field = f"joint[{joint.get('name', '')}].safety_controller"
+        names = [f"soft_{end}_limit" for end in ("lower", "upper")]
+        given = [soft.get(name) for name in names]
+        if None in given:
+            continue
+        low, high = (_finite(f"{field}.{name}", soft.get(name, "")) for name in names)
+        if low < high:
+            for end, better, value in (("lower", max, low), ("upper", min, high)):
+                own = _number(f"joint[{joint.get('name', '')}].limit", limit, end)
+                limit.set(end, repr(better(own, value)))
 
 
 def check_urdf(
@@ -314,7 +341,7 @@ def _tree(
         kind = joint.get("type", "")
         if kind in _MOVING:
             if kind != CONTINUOUS:
-                _limits(name, joint)
+                _limits(name, joint, kind)
             _axis(name, joint)
             kinds[name] = kind
         elif kind != "fixed":
@@ -350,7 +377,7 @@ def check_follower(name: str, joint: ET.Element, kind: str) -> None:
         message = f"{kind!r}: only revolute, continuous and prismatic joints can follow another one"
         raise InputError(None, f"joint[{name}].type", message)
     if kind != CONTINUOUS and joint.find("limit") is not None:
-        _limits(name, joint)
+        _limits(name, joint, kind)
     _axis(name, joint)
 
 
@@ -371,13 +398,20 @@ def _weightless(
                 yield error
 
 
-def _limits(name: str, joint: ET.Element) -> None:
+def _limits(name: str, joint: ET.Element, kind: str) -> None:
     field = f"joint[{name}].limit"
     limit = joint.find("limit")
     lower = _number(field, limit, "lower")
     upper = _number(field, limit, "upper")
     if lower >= upper:
         raise InputError(None, field, f"lower {lower} is not below upper {upper}")
+    most = max(upper, lower, key=abs)
+    if kind == PRISMATIC:
+        if _LONGEST < abs(most) <= 1000 * _LONGEST:
+            raise InputError(None, field, looks_like_millimeters(most))
+    elif beyond_turns(most, 2) and abs(most) <= _MOST_DEGREES:
+        message = f"{looks_like_degrees(most)} (a joint that turns endlessly is 'continuous')"
+        raise InputError(None, field, message)
 
 
 def _effort(name: str, joint: ET.Element) -> InputError | None:

@@ -18,6 +18,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.mending import (
     against_the_others,
+    in_words,
     inside_out,
     merged,
     repeated_corners,
@@ -95,8 +96,16 @@ def mesh_surface(
     normals = summed_normals(mesh)
     size = np.linalg.norm(normals, axis=1, keepdims=True)
     if size.min() < 1e-6:
-        vertex = np.argmin(size)
-        raise InputError(None, f"vertices[{vertex}]", "has no normal: its faces cancel out")
+        vertex = int(np.argmin(size))
+        field, message = f"vertices[{vertex}]", "has no normal: its faces cancel out"
+        if divided is not None and vertex >= len(vertices):  # one that no file has
+            face = divided[1][(mesh.corners == vertex).any(axis=1)][0]
+            where = in_words(mesh.points[vertex] * meters_per_unit)
+            field, message = (
+                f"faces[{face}]",
+                f"lies on another, so there is no normal at {where} m",
+            )
+        raise InputError(None, field, message)
     normals /= size
     points = mesh.points * meters_per_unit
     return Surface(points, mesh.corners, normals, faceted=True, divided=divided)

@@ -8,7 +8,6 @@ one surface. trimesh reads the other formats.
 from __future__ import annotations
 
 import io
-import itertools
 import re
 from array import array
 from collections.abc import Iterator
@@ -20,14 +19,16 @@ import trimesh
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.errors import InputError, system_errors
-from cellcolor.frontend.parts.mesh import mesh_surface
+from cellcolor.errors import InputError, naming, system_errors
+from cellcolor.frontend.parts.mesh import check_corners, mesh_surface
 from cellcolor.frontend.parts.part import Part
+from cellcolor.frontend.parts.polygons import triangulated
 from cellcolor.frontend.parts.surface import Faces, Surface
 from cellcolor.frontend.sizes import check_faces
 from cellcolor.frontend.tables import Positive
 
 _MOST_BYTES = 200_000_000  # some millions of triangles; reading takes ten times as much memory
+_PLY_CORNERS = ("vertex_indices", "vertex_index")
 _HEADER = 4096  # bytes; where a PLY file names its elements
 
 
@@ -39,11 +40,14 @@ class MeshObject(Part):
     meters_per_unit: Positive
     max_edge_m: Positive | None = None
     repair: bool = False
+    flip: bool = False
+
+    NEWER = ("flip",)
 
     def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:
         """The mesh as it is, or refined or repaired on request; see :func:`load_mesh`."""
         units, longest = self.meters_per_unit, self.max_edge_m
-        return load_mesh(folder / self.file, units, longest, self.repair, deadline)
+        return load_mesh(folder / self.file, units, longest, self.repair, deadline, self.flip)
 
 
 def load_mesh(
@@ -52,6 +56,7 @@ def load_mesh(
     max_edge_m: float | None = None,
     mend: bool = False,
     deadline: Deadline = NEVER,
+    flip: bool = False,
 ) -> Surface:
     """A mesh file as a surface, checked; see :func:`~cellcolor.frontend.parts.mesh.mesh_surface`.
 
@@ -61,6 +66,7 @@ def load_mesh(
         meters_per_unit: of the file's coordinates.
         max_edge_m, mend: see :func:`~cellcolor.frontend.parts.mesh.mesh_surface`.
         deadline: when to give up; not looked at while another library reads the file.
+        flip: turn the faces over; of an open mesh the other side is then the outside.
 
     Raises:
         InputError: missing or unreadable file, or the mesh cannot be used; names file and element.
@@ -68,6 +74,7 @@ def load_mesh(
     try:
         vertices, faces = read_mesh(file, deadline)
         check_faces(len(faces))
+        faces = np.ascontiguousarray(faces[:, ::-1]) if flip else faces
         return mesh_surface(vertices, faces, meters_per_unit, max_edge_m, mend, deadline)
     except InputError as error:
         # Of halving edges the scene is to blame, which alone can say that it was asked for.
@@ -105,6 +112,9 @@ def read_mesh(file: Path, deadline: Deadline = NEVER) -> tuple[Array, Faces]:
     except Exception as error:  # trimesh's readers raise whatever their parsers ran into
         raise InputError(str(file), None, f"trimesh cannot read it: {error!r}") from error
     deadline.check()
+    if file.suffix.lower() == ".ply" and len(faces) > mesh.metadata["_ply_raw"]["face"]["length"]:
+        with naming(file):
+            faces = _ply_faces(mesh)
     if file.suffix.lower() == ".stl":
         vertices, index = np.unique(vertices, axis=0, return_inverse=True)
         faces = index.reshape(-1)[faces]
@@ -149,13 +159,11 @@ def _check_container(file: Path) -> None:
 def read_obj(file: Path, deadline: Deadline) -> tuple[Array, Faces]:
     """Vertices (n, 3) in the order of the file, and triangles (m, 3).
 
-    A face of more corners is cut into a fan about its first one.
-
     Raises:
-        InputError: unreadable, a face of fewer than three corners, an index of no vertex, what is
-            not a number; names the line.
+        InputError: unreadable, a face of fewer than three corners or one that crosses itself, an
+            index of no vertex, what is not a number; names the line.
     """
-    points, corners = array("d"), array("q")
+    points, corners, sizes, lines = array("d"), array("q"), array("q"), array("q")
     with (
         system_errors(file, "cannot be read"),
         file.open(encoding="utf-8", errors="replace") as stream,
@@ -171,12 +179,32 @@ def read_obj(file: Path, deadline: Deadline) -> tuple[Array, Faces]:
                     face = [_index(word, len(points) // 3) for word in words]
                     if len(face) < 3:
                         raise ValueError("a face has three corners or more")
-                    for second, third in itertools.pairwise(face[1:]):
-                        corners.extend((face[0], second, third))
+                    corners.extend(face)
+                    sizes.append(len(face))
+                    lines.append(number)
             except (ValueError, OverflowError) as error:
                 raise InputError(str(file), f"line {number}", str(error)) from error
     vertices = np.array(points, dtype=np.float64).reshape(-1, 3)
-    return vertices, np.array(corners, dtype=np.int64).reshape(-1, 3)
+    with naming(file):
+        given = np.array(corners, dtype=np.int64), np.array(sizes, dtype=np.int64)
+        return vertices, triangulated(vertices, *given, lambda face: f"line {lines[face]}")
+
+
+def _ply_faces(mesh: trimesh.Trimesh) -> Faces:
+    """The triangles of a PLY file's faces, of which trimesh cuts concave ones wrongly.
+
+    Raises:
+        InputError: a face crosses itself; names it.
+    """
+    data = mesh.metadata["_ply_raw"]["face"]["data"]
+    text = isinstance(data, dict)
+    names = list(data) if text else data.dtype.names
+    name = next((each for each in names if each in _PLY_CORNERS), names[0])
+    rows = [np.asarray(row, dtype=np.int64) for row in (data[name] if text else data[name]["f1"])]
+    sizes = np.array([len(row) for row in rows])
+    vertices = np.asarray(mesh.vertices)
+    check_corners(vertices, np.asarray(mesh.faces))
+    return triangulated(vertices, np.concatenate(rows), sizes, lambda face: f"faces[{face}]")
 
 
 def _lines(stream: TextIO) -> Iterator[tuple[int, str]]:

@@ -17,6 +17,13 @@ class Placement(Table):
     position_m: Position
     rpy_rad: Angles = (0.0, 0.0, 0.0)
 
+    @property
+    def matrix(self) -> Array:
+        """(4, 4) from the thing's own frame to the world."""
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = rotation_from_rpy(*self.rpy_rad), self.position_m
+        return pose
+
     def placed(self, points: Array) -> Array:
         """Points (n, 3) of the thing's own frame in the world, m."""
         turn = rotation_from_rpy(*self.rpy_rad)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
+from cellcolor.data.wording import looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.body import Shapes
@@ -29,6 +30,7 @@ from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.setup import Setup, Task
 from cellcolor.memory import chunks
 
+_LONGEST = 100.0  # m; of an arm
 _MOST_SOLUTIONS = 16  # of six revolute joints
 
 
@@ -159,8 +161,16 @@ def prepare_arm(setup: Setup) -> PreparedArm:
     with naming(setup.file):
         robot = _robot(setup)
         kinematics = _kinematics(setup, robot)
+        _check_reach(robot, kinematics.reach)
         limits = conditioning(setup, kinematics.reach, robot)
     return PreparedArm(setup, robot, kinematics, limits)
+
+
+def _check_reach(robot: Robot, reach: float) -> None:
+    """Refuse an arm that is far too long."""
+    if reach > _LONGEST:
+        message = f"the arm reaches {reach:.4g} m: {looks_like_millimeters(float(f'{reach:.4g}'))}"
+        raise InputError(str(robot.files[0]), "robot", message)
 
 
 def _family(setup: Setup) -> type[InverseKinematics]:

@@ -7,6 +7,8 @@ from cellcolor.questions.explanation import Explanation
 from cellcolor.questions.front import Front
 from cellcolor.questions.placements import Placements
 
+_UNFINISHED = "The time limit came before everything was tried."
+
 
 def answer_card(answer: Answers) -> Card:
     """The card of an answer, which says the same as the command."""
@@ -33,4 +35,7 @@ def _front_card(front: Front) -> Card:
         (str(point.lift_offs), f"{100 * point.covered_share:.1f} %", point.proof) for point in front
     ]
     modes = tuple(point.in_short for point in front)
-    return Card("Lift-offs against area", (text,), tuple(rows), modes=modes)
+    texts = (
+        (text,) if front.complete else (text, "The time limit came before everything was tried.")
+    )
+    return Card("Lift-offs against area", texts, tuple(rows), modes=modes)

@@ -21,12 +21,16 @@ def cards_of(report: MotionReport) -> tuple[Card, ...]:
     """All of them, those with nothing to tell left out."""
     cards = (
         _verdict(report),
+        _warnings(report),
+        _lacking(report),
         _proof(report),
+        _feed(report),
         _coverage(report),
         _segments(report),
         _reach(report),
         _extra(report),
         _left_out(report),
+        _programs(report),
     )
     answers = () if report.answered is None else report.answered.answers
     return (*(card for card in cards if card is not None), *map(answer_card, answers))
@@ -93,6 +97,43 @@ def _verdict(report: MotionReport) -> Card:
     if any(time is not None for time in times):
         texts.append("A click on a row, on its mark on the part or in the bar of time leads there.")
     return Card(title, tuple(texts), tuple(rows), False, times=times)
+
+
+def _warnings(report: MotionReport) -> Card | None:
+    """Likely mistakes in the scene, and what its numbers depend on."""
+    found = report.built.report.warnings
+    return Card("Warnings", found, (), None) if found else None
+
+
+def _lacking(report: MotionReport) -> Card | None:
+    """What was asked for, or is usual, and is not there."""
+    return Card("What is not there", report.lacking, (), False) if report.lacking else None
+
+
+def _feed(report: MotionReport) -> Card | None:
+    """How steadily the tool moves along each stroke."""
+    verdict = report.verdict
+    if verdict is None or not verdict.feeds:
+        return None
+    asked, window = verdict.feeds[0].asked_m_per_s, 1e3 * verdict.feeds[0].window_m
+    text = (
+        f"Asked for: {asked:g} m/s. The lowest is over {window:g} mm, the tool's footprint, away "
+        "from the ends; slow is below 90 % of what is asked for."
+    )
+    rows = [("stroke", "mean m/s", "lowest m/s", "slow, of the time", "because of")]
+    rows += [
+        (
+            str(number),
+            f"{feed.mean_m_per_s:.3g}",
+            f"{feed.lowest_m_per_s:.3g}",
+            f"{feed.slow_share:.0%}",
+            f"{feed.limited_by} of {feed.joint}" if feed.slow_share and feed.joint else "–",
+        )
+        for number, feed in enumerate(verdict.feeds)
+    ]
+    good = None if "feed" not in verdict.fault_counts else False
+    times = tuple(feed.time for feed in verdict.feeds)
+    return Card("Feed", (text,), tuple(rows), good, times=times)
 
 
 def _coverage(report: MotionReport) -> Card | None:
@@ -250,6 +291,18 @@ def _extra(report: MotionReport) -> Card | None:
             for extra in trajectory.extra_lift_offs
         ]
     return Card("Beyond the minimum", tuple(texts), tuple(rows), False)
+
+
+def _programs(report: MotionReport) -> Card | None:
+    """What is known of the programs for the arm's controller."""
+    if not report.programs:
+        return None
+    text = (
+        f"{listed(report.programs)}: joint moves as they were judged, and linear moves at the "
+        "feed, which were not judged. No parser of the maker, nor any other foreign one, has read "
+        "them: run them in simulation first."
+    )
+    return Card("Programs for the controller", (text,))
 
 
 def _left_out(report: MotionReport) -> Card | None:

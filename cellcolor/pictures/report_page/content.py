@@ -74,6 +74,8 @@ class MotionReport:
         paths: the tool paths, which are drawn if there is no trajectory.
         missing: what of this there is not, and why, as a sentence; empty for a whole plan.
         answered: what was asked besides.
+        programs: the names of those for the arm's controller.
+        lacking: what was asked for or is usual and is not there, a line each with the reason.
     """
 
     built: BuildResult
@@ -86,3 +88,5 @@ class MotionReport:
     paths: ToolPaths | None = None
     missing: str = ""
     answered: AnsweredScene | None = None
+    programs: tuple[str, ...] = ()
+    lacking: tuple[str, ...] = ()

@@ -22,6 +22,10 @@ from cellcolor.solvers.cpsat.parts import loops_of, seam_places
 from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 
+MOST_LITERALS = 1_000_000
+"""The most for the colors of sectors, of which 100,000 take 10 seconds and half a gigabyte to
+build. The model has about 17 times as many constraints."""
+
 
 class CompleteModel(SectorModel):
     """The formulation of a whole instance.
@@ -54,7 +58,7 @@ class CompleteModel(SectorModel):
         self._places = seam_places(instance, self._loops)
         self._each = dict.fromkeys(instance.live_edges, strands)
         self._graph = complete_graph(instance, self._each, self._loops, self._places)
-        super().__init__(self._graph, color_regions(instance), groups, deadline)
+        super().__init__(self._graph, color_regions(instance), MOST_LITERALS, groups, deadline)
         self.hint(self._whole())
 
     def read(self, solver: cp_model.CpSolver) -> tuple[Division, tuple[Seam, ...]]:

@@ -27,7 +27,7 @@ def add_variables(m: SectorModel, *, only_centers: bool) -> None:
     """
     model, v, sectors = m.model, m.variables, m.sectors
     size = [sum(len(sectors.nodes[cell]) for cell in cells) for _, cells in m.regions]
-    for sector, cell in enumerate(sectors.cell):
+    for sector, cell in enumerate(m.deadline.watch(sectors.cell)):
         name = f"{cell},{sector - sectors.nodes[cell][0]}"
         colors = sorted(m.colors(sector))
         for c in colors:
@@ -38,10 +38,10 @@ def add_variables(m: SectorModel, *, only_centers: bool) -> None:
                 v.root[sector, c] = model.new_bool_var(f"root[{name},{c}]")
         most = max(size[m.region_of[cell, c]] for c in colors)
         v.rank.append(model.new_int_var(0, most - 1, f"rank[{name}]"))
-    for leaf, hosts in sectors.hosts.items():
+    for lone, hosts in sectors.hosts.items():
         for host in hosts:
-            v.attached[leaf, host] = model.new_bool_var(f"attached[{leaf},{host}]")
-    for here, own in enumerate(m.neighbors):
+            v.attached[lone, host] = model.new_bool_var(f"attached[{lone},{host}]")
+    for here, own in enumerate(m.deadline.watch(m.neighbors)):
         for there in own:
             v.parent[here, there] = model.new_bool_var(f"parent[{here},{there}]")
 
@@ -55,7 +55,7 @@ def one_color(m: SectorModel) -> None:
 def parent_or_root(m: SectorModel) -> None:
     """(2) Each sector has a parent, or it is the root of its segment in its color."""
     v = m.variables
-    for sector, own in enumerate(m.neighbors):
+    for sector, own in enumerate(m.deadline.watch(m.neighbors)):
         roots = [v.root[sector, c] for c in m.colors(sector) if (sector, c) in v.root]
         m.model.add_bool_or([v.parent[sector, other] for other in own] + roots)
     for (sector, c), literal in v.root.items():
@@ -65,7 +65,7 @@ def parent_or_root(m: SectorModel) -> None:
 def parent_of_one_color(m: SectorModel) -> None:
     """(3) A sector has the color of its parent, and that color is joinable between the two."""
     v = m.variables
-    for (here, there), literal in v.parent.items():
+    for (here, there), literal in m.deadline.watch(v.parent.items()):
         joinable = m.neighbors[here][there]
         for c in sorted(m.colors(here)):
             same = [v.color[there, c]] if c in joinable else []
@@ -75,21 +75,21 @@ def parent_of_one_color(m: SectorModel) -> None:
 def no_circles(m: SectorModel) -> None:
     """(4) Ranks fall from each sector to its parent, so that parents lead to a root."""
     v = m.variables
-    for (here, there), literal in v.parent.items():
+    for (here, there), literal in m.deadline.watch(v.parent.items()):
         m.model.add(v.rank[here] >= v.rank[there] + 1).only_enforce_if(literal)
 
 
 def one_host(m: SectorModel) -> None:
-    """(5) A leaf dart is attached to one sector of its cell at most, in one color with it."""
+    """(5) A lone dart is attached to one sector of its cell at most, in one color with it."""
     v = m.variables
-    for leaf, hosts in m.sectors.hosts.items():
-        m.model.add_at_most_one(v.attached[leaf, host] for host in hosts)
+    for lone, hosts in m.sectors.hosts.items():
+        m.model.add_at_most_one(v.attached[lone, host] for host in hosts)
         for host in hosts:
-            attached = v.attached[leaf, host]
-            m.model.add_implication(v.parent[leaf, host], attached)
-            m.model.add_implication(v.parent[host, leaf], attached)
-            for c in sorted(m.colors(leaf)):
-                m.model.add_bool_or([~attached, ~v.color[leaf, c], v.color[host, c]])
+            attached = v.attached[lone, host]
+            m.model.add_implication(v.parent[lone, host], attached)
+            m.model.add_implication(v.parent[host, lone], attached)
+            for c in sorted(m.colors(lone)):
+                m.model.add_bool_or([~attached, ~v.color[lone, c], v.color[host, c]])
 
 
 def undivided(m: SectorModel) -> None:
@@ -113,7 +113,7 @@ def fixed_roots(m: SectorModel) -> None:
 def regions_in_use(m: SectorModel) -> None:
     """(8) A region in use has a root, and each cell lies in a region in use."""
     model, v = m.model, m.variables
-    for (sector, c), literal in v.color.items():
+    for (sector, c), literal in m.deadline.watch(v.color.items()):
         model.add_implication(literal, m.used[m.region_of[m.sectors.cell[sector], c]])
     roots: list[list[cp_model.IntVar]] = [[] for _ in m.regions]
     for (sector, c), literal in v.root.items():
@@ -134,7 +134,7 @@ def cover(m: SectorModel) -> None:
 def company(m: SectorModel) -> None:
     """(10) Each sector is a root, or has a neighbor of its color."""
     v = m.variables
-    for (sector, c), literal in v.color.items():
+    for (sector, c), literal in m.deadline.watch(v.color.items()):
         near = [v.color[other, c] for other, own in m.neighbors[sector].items() if c in own]
         own = [v.root[sector, c]] if (sector, c) in v.root else []
         m.model.add_bool_or([~literal, *near, *own])
@@ -180,7 +180,7 @@ def connections(m: SectorModel) -> None:
         if not sectors.rings[cell]:
             continue
         colors = [graph.darts[dart].colors for dart in loops[0]]
-        most = best_grouping(colors).connections
+        most = best_grouping(colors, m.deadline).connections
         joined = [1 - m.apart[m.link_at[dart]][0] for dart in loops[0]]
         changes = [m.apart[link][0] for link in m.ring_of[cell]]
         m.model.add(sum(own.get(cell, [])) + 2 + sum(changes) >= 2 * (sum(joined) - most))

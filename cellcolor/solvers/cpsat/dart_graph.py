@@ -20,7 +20,7 @@ from cellcolor.errors import TooLarge
 from cellcolor.solvers.cpsat.parts import Loops, loops_of, seam_places
 
 MOST_STRANDS = 100_000
-"""The most strands of seams in a complete graph. From loop to loop of a cell they double."""
+"""The most strands of seams in a complete graph."""
 
 
 class Dart(NamedTuple):
@@ -75,24 +75,17 @@ class DartGraph:
 def enough_strands(counts: Sequence[int]) -> list[int]:
     """Strands for the seams of a cell that leave its minimum unchanged (semantics, section 5).
 
+    All of them leave from one corner of the first loop.
+
     Args:
         counts: the live darts of each of its loops, strands counted.
 
     Returns:
         Strands of the seam to the second, third, … loop.
     """
-    live = [count for count in counts if count]
-    total = sum(live)
-    found = []
-    for count in counts[1:]:
-        if len(live) < 2 or not count:
-            found.append(0)
-        elif len(live) == 2:
-            found.append(max(0, total // 2 - 1))
-        else:
-            found.append(total // 2)
-            total += 2 * found[-1]
-    return found
+    live = sum(count > 0 for count in counts)
+    enough = max(0, sum(counts) // 2 - (live == 2))
+    return [enough if live > 1 and count else 0 for count in counts[1:]]
 
 
 def seams_of(instance: Instance, strands: Mapping[int, int], most: int | None) -> tuple[Seam, ...]:
@@ -108,7 +101,7 @@ def widened(
     places: Sequence[Seam],
     most: int | None,
     *,
-    leaves: bool = False,
+    lone: bool = False,
 ) -> tuple[Seam, ...]:
     """Seams with as many strands as are ever needed.
 
@@ -117,7 +110,7 @@ def widened(
         loops: the loops between which seams run.
         places: where they run, in the order of cells and loops.
         most: no seam gets more strands than this; None for as many as are ever needed.
-        leaves: whether further loops with a single live dart get no strands, and count for none.
+        lone: whether further loops with a single live dart get no strands, and count for none.
     """
     left = iter(places)
     seams: list[Seam] = []
@@ -125,7 +118,7 @@ def widened(
         if len(own) < 2:
             continue
         counts = [sum(strands[abs(d)] for d in loop if instance.joinable(d)) for loop in own]
-        if leaves:
+        if lone:
             counts[1:] = [0 if count == 1 else count for count in counts[1:]]
         widths = [count if most is None else min(count, most) for count in enough_strands(counts)]
         seams += [replace(next(left), strands=width) for width in widths]
@@ -138,7 +131,7 @@ def dart_graph(
     seams: Sequence[Seam] | None,
     loops: Loops | None = None,
     *,
-    leaves: bool = False,
+    lone: bool = False,
 ) -> DartGraph:
     """Put strands and seams into the instance's loops and leave out what is dead.
 
@@ -147,7 +140,7 @@ def dart_graph(
         seams: one for each further loop of a cell, all from the cell's first loop; None leaves the
             loops apart.
         loops: the loops of each cell between which its seams run; None for its live ones.
-        leaves: whether a further loop with a single live dart stays apart, without a seam.
+        lone: whether a further loop with a single live dart stays apart, without a seam.
     """
     loops = loops_of(instance) if loops is None else loops
     found: list[tuple[Strand, int, frozenset[int]]] = []
@@ -160,7 +153,7 @@ def dart_graph(
     for cell, own in zip(instance.cells, loops, strict=True):
         between = None if seams is None else seams_of.get(cell.id, [])
         apart = [
-            leaves and sum(strands[abs(d)] for d in loop if instance.joinable(d)) == 1
+            lone and sum(strands[abs(d)] for d in loop if instance.joinable(d)) == 1
             for loop in own[1:]
         ]
         walks = _walks(own, between, apart)
@@ -189,7 +182,7 @@ def complete_graph(
     loops: Loops,
     places: Sequence[Seam],
 ) -> DartGraph:
-    """The graph in which every scheme can be drawn: seams as wide as needed, leaf darts apart.
+    """The graph in which every scheme can be drawn: seams as wide as needed, lone darts apart.
 
     Args:
         strands: of each live edge.
@@ -199,12 +192,12 @@ def complete_graph(
     Raises:
         TooLarge: seams would need too many strands.
     """
-    seams = widened(instance, strands, loops, places, None, leaves=True)
+    seams = widened(instance, strands, loops, places, None, lone=True)
     count = sum(seam.strands for seam in seams)
     if count > MOST_STRANDS:
         message = f"{count} strands of seams, {MOST_STRANDS} are the most"
         raise TooLarge(f"The model was not built: it would need {message}.")
-    return dart_graph(instance, strands, seams, loops, leaves=True)
+    return dart_graph(instance, strands, seams, loops, lone=True)
 
 
 def _walks(

@@ -1,8 +1,8 @@
-"""Divisions drawn on sectors, and leaf darts drawn with seams.
+"""Divisions drawn on sectors, and lone darts drawn with seams.
 
 A coloring of sectors says everything about a division, and a division can be drawn on sectors in
 one way: each sub-cell takes the sectors of its darts, and connects them in the ring of its nesting
-height (docs/formulation.md, "Rings"). A solution file writes leaf darts with seams.
+height (docs/formulation.md, "Rings"). A solution file writes lone darts with seams.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def sector_colors(sectors: SectorGraph, painting: Painting) -> tuple[list[int], 
     apart.
 
     Returns:
-        The colors, and for each leaf dart's sector the one that it is attached to, if any.
+        The colors, and for each lone dart's sector the one that it is attached to, if any.
     """
     colors = [0] * len(sectors.cell)
     attached: dict[int, int] = {}
@@ -120,7 +120,7 @@ def _attach(
     colors: list[int],
     attached: dict[int, int],
 ) -> None:
-    """Color the sectors of leaf darts, and attach those in state 1 to their sub-cells."""
+    """Color the sectors of lone darts, and attach those in state 1 to their sub-cells."""
     graph = sectors.graph
     loops = graph.loops[cell]
     host = {
@@ -170,11 +170,11 @@ def seamed(
     loops: Loops,
     places: Sequence[Seam],
 ) -> tuple[DartGraph, Painting]:
-    """A painting whose leaf darts are drawn with seams, so that each cell has one cyclic list.
+    """A painting whose lone darts are drawn with seams, so that each cell has one cyclic list.
 
     Args:
         strands: of each live edge.
-        graph: with leaf darts apart.
+        graph: with lone darts apart.
         painting: of it.
         loops: of each cell, between which seams run.
         places: the seams of all cells.
@@ -200,9 +200,9 @@ def seamed(
 
 
 class _SeamedList:
-    """The cyclic list of a cell, into which one leaf dart after the other is put.
+    """The cyclic list of a cell, into which one lone dart after the other is put.
 
-    A seam to a leaf dart crosses the sub-cells that separate its corner from the dart's sub-cell,
+    A seam to a lone dart crosses the sub-cells that separate its corner from the dart's sub-cell,
     and cuts each of them into two parts.
     """
 
@@ -227,15 +227,15 @@ class _SeamedList:
         head = [name for dart in first[:1] for name in named.get(dart, ())]
         tail = [name for dart in first[1:] for name in named.get(dart, ())]
         sections: list[list[Strand]] = []
-        leaves = []
+        lone = []
         for seam, loop in zip(seams, others, strict=True):
             names = [name for d in (*loop[1:], *loop[:1]) for name in named.get(d, ())]
             if len(names) == 1 and not widths.get(seam.id):
-                leaves.append((len(sections), seam, names[0]))
+                lone.append((len(sections), seam, names[0]))
                 names = []
             through = named.get(seam.id, []), named.get(-seam.id, [])
             sections.append([*through[0], *names, *through[1]])
-        for place, seam, name in leaves:
+        for place, seam, name in lone:
             before = [*head, *(n for own in reversed(sections[place + 1 :]) for n in own)]
             after = [*(n for own in reversed(sections[:place]) for n in own), *tail]
             sections[place], widths[seam.id] = self._led(seam, name, before, after)

@@ -22,9 +22,6 @@ from cellcolor.solvers.cpsat.drawing import sector_colors
 from cellcolor.solvers.cpsat.painting import Painting
 from cellcolor.solvers.cpsat.sectors import painting_of_sectors, sector_graph
 
-MOST_LITERALS = 100_000
-"""The most literals for the colors of sectors; the model has about 17 times as many constraints."""
-
 Pair = tuple[int, int]
 
 
@@ -37,7 +34,7 @@ class Variables:
         parent: per two neighboring sectors: the second is the parent of the first.
         root: per sector and color: the sector is the root of its segment, in that color.
         rank: per sector: larger than its parent's.
-        attached: per leaf dart's sector and host: the one is attached to the other.
+        attached: per lone dart's sector and host: the one is attached to the other.
     """
 
     color: dict[Pair, cp_model.IntVar] = field(default_factory=dict)
@@ -51,8 +48,9 @@ class SectorModel:
     """The model on the sector graph of some cells.
 
     Args:
-        graph: the darts of the cells, leaf darts apart.
+        graph: the darts of the cells, lone darts apart.
         regions: the color regions of the cells.
+        most_literals: for the colors of sectors; a larger model is not built.
         groups: the names of the ``REDUNDANT`` groups of constraints; None for all of them.
         deadline: of building it.
 
@@ -62,6 +60,7 @@ class SectorModel:
         sectors: the sector graph.
         regions: the color regions.
         segments: the objective.
+        deadline: of building it.
         fewest_regions: the size of a smallest cover, where the group ``cover`` is there; else 0.
         fixed_root: for each region with a one-colored cell, the cell that has its segment's root.
 
@@ -75,14 +74,15 @@ class SectorModel:
         self,
         graph: DartGraph,
         regions: Sequence[Region],
+        most_literals: int,
         groups: Collection[str] | None = None,
         deadline: Deadline = NEVER,
     ) -> None:
         wanted = REDUNDANT.keys() if groups is None else groups
         if unknown := sorted(set(wanted) - REDUNDANT.keys()):
             raise InputError(None, "groups", f"there is no group {unknown[0]!r}")
-        self.sectors = sector_graph(graph, None, deadline, MOST_LITERALS)
-        self.regions = regions
+        self.sectors = sector_graph(graph, None, deadline, most_literals)
+        self.regions, self.deadline = regions, deadline
         self.model = cp_model.CpModel()
         self.variables = Variables()
         self.region_of = {(c, color): n for n, (color, cells) in enumerate(regions) for c in cells}
@@ -91,7 +91,6 @@ class SectorModel:
         add_variables(self, only_centers="undivided" in wanted)
         for name, group in {**DEFINING, **REDUNDANT}.items():
             if name in DEFINING or name in wanted:
-                deadline.check()
                 group(self)
         self.segments = sum(self.variables.root.values())
         self.model.minimize(self.segments)
@@ -108,7 +107,7 @@ class SectorModel:
         for (sector, c), literal in v.color.items():
             if solver.boolean_value(literal):
                 colors[sector] = c
-        attached = {leaf: h for (leaf, h), own in v.attached.items() if solver.boolean_value(own)}
+        attached = {lone: h for (lone, h), own in v.attached.items() if solver.boolean_value(own)}
         return painting_of_sectors(self.sectors, colors, attached)
 
     def hint(self, painting: Painting) -> None:
@@ -124,12 +123,12 @@ class SectorModel:
                 model.add_hint(literal, colors[sector] == c)
         for (sector, c), literal in v.root.items():
             model.add_hint(literal, colors[sector] == c and sector not in parent)
-        for (here, there), literal in v.parent.items():
+        for (here, there), literal in self.deadline.watch(v.parent.items()):
             model.add_hint(literal, parent.get(here) == there)
         for sector, own in enumerate(v.rank):
             model.add_hint(own, rank[sector])
-        for (leaf, host), literal in v.attached.items():
-            model.add_hint(literal, attached.get(leaf) == host)
+        for (lone, host), literal in v.attached.items():
+            model.add_hint(literal, attached.get(lone) == host)
 
     def _trees(
         self, colors: Sequence[int], attached: Mapping[int, int]
@@ -138,10 +137,11 @@ class SectorModel:
         sectors = self.sectors
         fixed = {(cell, self.regions[number][0]) for number, cell in self.fixed_root.items()}
 
+        whole = [len({colors[node] for node in nodes}) == 1 for nodes in sectors.nodes]
+
         def order(sector: int) -> tuple[bool, bool, int]:
             cell = sectors.cell[sector]
-            whole = len({colors[node] for node in sectors.nodes[cell]}) == 1
-            center = whole and sector == sectors.center(cell)
+            center = whole[cell] and sector == sectors.center(cell)
             return not (center and (cell, colors[sector]) in fixed), not center, sector
 
         parent: dict[int, int] = {}
@@ -176,9 +176,9 @@ class SectorModel:
             colors = self._joinable(one, dart)
             for here, there in ((one, other), (other, one)):
                 found[here][there] = found[here].get(there, frozenset()) | colors
-        for leaf, hosts in self.sectors.hosts.items():
+        for lone, hosts in self.sectors.hosts.items():
             for host in hosts:
-                found[leaf][host] = found[host][leaf] = self._joinable(leaf, -1)
+                found[lone][host] = found[host][lone] = self._joinable(lone, -1)
         return found
 
     def _joinable(self, sector: int, dart: int) -> frozenset[int]:
@@ -192,7 +192,7 @@ class SectorModel:
         The second literal says that they have one color nevertheless, which is not joinable there;
         None where that cannot be.
         """
-        return [self._apart(number) for number in range(len(self.sectors.links))]
+        return [self._apart(n) for n in self.deadline.watch(range(len(self.sectors.links)))]
 
     def _apart(self, number: int) -> tuple[cp_model.IntVar, cp_model.IntVar | None]:
         model, color = self.model, self.variables.color
@@ -225,7 +225,7 @@ class SectorModel:
             for face in faces:
                 around[face].append(link)
         found = {}
-        for face, links in enumerate(around):
+        for face, links in enumerate(self.deadline.watch(around)):
             alike = [own for link in links if (own := self.apart[link][1]) is not None]
             if len(links) > 2 or alike:
                 least, most = -len(alike), max(0, len(links) - 2)

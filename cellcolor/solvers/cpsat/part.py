@@ -45,6 +45,10 @@ LEVELS = (1, 0.1), (2, 0.2), (0, 0.7)
 segments are ruled out by a full relaxation, by a small one or by none, hardly ever by all."""
 
 
+MOST_LITERALS = 100_000
+"""A larger model takes longer to build than local search takes to find more."""
+
+
 class Part:
     """The best division of a part so far, and its proved bounds.
 
@@ -183,7 +187,7 @@ class Part:
         part = self._part
         try:
             graph = complete_graph(self.instance, strands, part.loops, part.seams)
-            built = SectorModel(graph, self.regions, deadline=deadline)
+            built = SectorModel(graph, self.regions, MOST_LITERALS, deadline=deadline)
         except TooLarge as error:
             self.notes.append(str(error))
             return

@@ -13,13 +13,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
+import numpy as np
+
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import TooLarge
 from cellcolor.solvers.cpsat.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block, Painting
-
-MANY_DARTS = 100
-"""In a cell with more darts, the longest chain of chords is taken to be half as many."""
 
 
 class Link(NamedTuple):
@@ -41,21 +40,21 @@ class SectorGraph:
     """Sectors, and the links between them in their order around each sector.
 
     A cell with n darts on its cyclic list has rings of n sectors, one for each dart, and a center.
-    Without rings it is all center. A **leaf dart** is the only live dart of a further loop of its
+    Without rings it is all center. A **lone dart** is the only live dart of a further loop of its
     cell. It has a sector of its own, which may be attached to any one other sector of the cell,
     since nothing keeps the loop from lying beside any sub-cell.
 
     Attributes:
         graph: the dart graph. The first loop of a cell is the cyclic list, each other one has a
-            single dart, a leaf dart.
+            single dart, a lone dart.
         nodes: the sectors of each cell: ring by ring from the border inwards, the center, and then
-            the sectors of leaf darts.
+            the sectors of lone darts.
         rings: how many rings each cell has.
         cell: the cell of each sector.
         at: the sector at each dart.
         links: the links that are drawn.
         around: for each sector its links counterclockwise, each with the side of it.
-        hosts: for each sector of a leaf dart, those that it may be attached to.
+        hosts: for each sector of a lone dart, those that it may be attached to.
     """
 
     graph: DartGraph
@@ -86,7 +85,7 @@ class SectorGraph:
         return found
 
     def center(self, cell: int) -> int:
-        """The center of a cell, or the first leaf dart's sector if all of its darts are leaves."""
+        """The center of a cell, or the first lone dart's sector if all of its darts are lone."""
         own = self.nodes[cell]
         count = len(self.graph.loops[cell][0]) if self.graph.loops[cell] else 0
         return own[count * self.rings[cell]]
@@ -127,7 +126,7 @@ def sector_graph(
     Then (m - 1) / 2 rings, rounded up, are enough (docs/formulation.md).
 
     Args:
-        graph: the first loop of each cell is a cyclic list, the others are leaf darts.
+        graph: the first loop of each cell is a cyclic list, the others are lone darts.
         most_rings: no cell gets more rings; some schemes may then have no room.
         most_colors: of all sectors together, each in any color of its cell.
 
@@ -174,10 +173,10 @@ def _rings_of(graph: DartGraph, loops: Sequence[Sequence[int]], most_rings: int 
 
 def _add_sectors(made: SectorGraph, cell: int, loops: Sequence[Sequence[int]], rings: int) -> None:
     darts = loops[0] if loops else ()
-    leaves = [loop[0] for loop in loops[1:]]
+    lone = [loop[0] for loop in loops[1:]]
     first, count = len(made.cell), len(darts)
-    centers = 1 if darts or not leaves else 0
-    end = first + count * rings + centers + len(leaves)
+    centers = 1 if darts or not lone else 0
+    end = first + count * rings + centers + len(lone)
     made.nodes.append(range(first, end))
     made.rings.append(rings)
     made.cell.extend([cell] * (end - first))
@@ -185,9 +184,9 @@ def _add_sectors(made: SectorGraph, cell: int, loops: Sequence[Sequence[int]], r
     for dart, node in zip(darts, ring, strict=True):
         made.at[dart] = node
     hosts = sorted({*ring, *range(first, first + centers)}) if not rings else ring
-    for node, dart in enumerate(leaves, start=end - len(leaves)):
+    for node, dart in enumerate(lone, start=end - len(lone)):
         made.at[dart] = node
-        made.hosts[node] = [*hosts, *range(end - len(leaves), node)]
+        made.hosts[node] = [*hosts, *range(end - len(lone), node)]
 
 
 def _add_rings(
@@ -226,18 +225,18 @@ def _add_rings(
     halves[center] = [half for half in outward if half is not None]
 
 
-def _enough_rings(colors: Sequence[frozenset[int]], leaves: bool) -> int:
+def _enough_rings(colors: Sequence[frozenset[int]], lone: bool) -> int:
     """How many rings every scheme can be drawn in.
 
     Args:
         colors: those joinable at each dart of a cyclic list.
-        leaves: whether the cell has leaf darts. With one of these, a single dart of the list is
+        lone: whether the cell has lone darts. With one of these, a single dart of the list is
             enough for a sub-cell at either end of a chain.
     """
     if len(colors) < 2:
         return 0
-    longest = _longest_chain(colors) if len(colors) <= MANY_DARTS else len(colors) // 2
-    if leaves:
+    longest = _longest_chain(colors)
+    if lone:
         longest = min(longest + 2, len(colors) // 2 + 1)
     return longest // 2
 
@@ -245,27 +244,18 @@ def _enough_rings(colors: Sequence[frozenset[int]], leaves: bool) -> int:
 def _longest_chain(colors: Sequence[frozenset[int]]) -> int:
     """The most chords between darts of a common color of which each separates its neighbors.
 
-    Cut the cyclic list anywhere: ``most[first][end]`` is the length of the longest chain of nested
-    chords between the darts from the first to the end. Chords that are nested in a cut list are
-    those of a chain, wherever the list is cut.
+    Chords of a chain are nested in some stretch of the cyclic list. So ``most[first]`` is the
+    length of the longest chain of nested chords in the stretch of ``size`` darts from the first.
     """
     count = len(colors)
-    share = [[not one.isdisjoint(other) for other in colors] for one in colors]
-    longest = 0
-    for cut in range(count):
-        most = [[0] * (count + 1) for _ in range(count + 2)]
-        for size in range(2, count + 1):
-            for first in range(count - size + 1):
-                last = first + size - 1
-                inside = most[first + 1][last]
-                best = max(most[first + 1][last + 1], most[first][last])
-                if share[(cut + first) % count][(cut + last) % count]:
-                    best = max(best, 1 + inside)
-                most[first][last + 1] = best
-        longest = max(longest, most[0][count])
-        if longest == count // 2:
-            break
-    return longest
+    share = np.array([[not one.isdisjoint(other) for other in colors] for one in colors])
+    first = np.arange(count)
+    shorter = most = np.zeros(count, dtype=np.int64)
+    for size in range(2, count + 1):
+        chord = share[first, (first + size - 1) % count]
+        within = np.where(chord, 1 + np.roll(shorter, -1), 0)
+        shorter, most = most, np.maximum.reduce([most, np.roll(most, -1), within])
+    return int(most.max())
 
 
 def painting_of_sectors(
@@ -274,13 +264,13 @@ def painting_of_sectors(
     """The division in which each sector has the given color.
 
     Args:
-        attached: the sector that each leaf dart's sector is attached to, if any.
+        attached: the sector that each lone dart's sector is attached to, if any.
     """
     graph, beside = sectors.graph, sectors.beside
     held: dict[int, list[int]] = {}
-    for leaf, host in (attached or {}).items():
-        held.setdefault(host, []).append(leaf)
-        held.setdefault(leaf, []).append(host)
+    for lone, host in (attached or {}).items():
+        held.setdefault(host, []).append(lone)
+        held.setdefault(lone, []).append(host)
     block_of: dict[int, Block] = {}
     painting: Painting = []
     for nodes in sectors.nodes:

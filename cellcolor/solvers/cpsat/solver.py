@@ -95,6 +95,7 @@ class _Search:
         self._start: tuple[DartGraph, Painting] | None = None
         self._parts: list[Part] = []
         begun = time.monotonic()
+        self._whole: tuple[DartGraph, Painting] | None = None
         self._whole = self._put_together()
         self._deadline = options.deadline.earlier(RESERVES * (time.monotonic() - begun))
         self._runner = Runner(replace(options, deadline=self._deadline))
@@ -170,7 +171,7 @@ class _Search:
 
     def _put_together(self) -> tuple[DartGraph, Painting]:
         """The best divisions of all parts as one; without parts every cell is painted whole."""
-        if not self._parts and hasattr(self, "_whole"):
+        if not self._parts and self._whole is not None:
             return self._whole
         found: dict[int, list[tuple[int, list[Strand]]]] = {}
         widths: dict[int, int] = {}

@@ -233,3 +233,62 @@ def test_followers_in_the_chain_are_refused(written: Callable[..., Path]) -> Non
         str(folder / ARM),
         "joint[elbow_joint].mimic",
     )
+
+
+@pytest.mark.parametrize(
+    ("pattern", "replacement", "field", "message"),
+    [
+        (r'upper="6.28\d*"', 'upper="180"', "joint[shoulder_pan_joint].limit", "3.1416 rad"),
+        (r'lower="-6.28\d*"', 'lower="-90"', "joint[shoulder_pan_joint].limit", "-1.5708 rad"),
+        (r'rpy="0 0 3.14\d*"', 'rpy="0 0 180"', "joint[shoulder_pan_joint].origin.rpy", "3.1416"),
+    ],
+)
+def test_degrees_are_refused(
+    pattern: str, replacement: str, field: str, message: str, written: Callable[..., Path]
+) -> None:
+    with pytest.raises(InputError, match=f"looks like degrees: {message}") as caught:
+        load(written(ARM, pattern, replacement))
+    assert caught.value.field == field
+
+
+@pytest.mark.parametrize("limit", [2 * np.pi * 2, 999999.0])
+def test_two_turns_and_no_limit_at_all_are_radians(
+    limit: float, written: Callable[..., Path]
+) -> None:
+    """The second as of vendors who write a number that nothing reaches."""
+    robot = load(written(ARM, r'upper="6.28\d*"', f'upper="{limit!r}"'))
+    assert robot.upper[0] == limit
+
+
+@pytest.mark.parametrize(
+    ("soft", "limits"),
+    [
+        ('soft_lower_limit="-2.5" soft_upper_limit="7"', (-2.5, 2 * np.pi)),  # 7 is beyond
+        ('soft_lower_limit="-2.5" soft_upper_limit="2"', (-2.5, 2)),
+        ('soft_lower_limit="0" soft_upper_limit="0"', (-2 * np.pi, 2 * np.pi)),  # nobody gave any
+        ('k_position="20"', (-2 * np.pi, 2 * np.pi)),
+    ],
+)
+def test_soft_limits_are_kept(
+    soft: str, limits: tuple[float, float], written: Callable[..., Path]
+) -> None:
+    robot = load(written(ARM, "<limit", f'<safety_controller {soft} k_velocity="10"/><limit'))
+    assert np.allclose((robot.lower[0], robot.upper[0]), limits)
+    assert np.allclose((robot.lower[1:], robot.upper[1:]), [[-2 * np.pi], [2 * np.pi]])
+
+
+def test_velocities_in_degrees_are_said(written: Callable[..., Path]) -> None:
+    robot = load(written(ARM, r'velocity="3.1\d*"', 'velocity="180"', count=2))
+    (text,) = [text for text in robot.warnings if "degrees per second" in text]
+    assert text.endswith("'shoulder_pan_joint' 180 rad/s, 'shoulder_lift_joint' 180 rad/s")
+    assert not load(ROBOTS).warnings
+
+
+def test_a_rail_in_millimeters(written: Callable[..., Path]) -> None:
+    rail = (
+        '<link name="rail"/><joint name="rail_joint" type="prismatic"><parent link="rail"/>'
+        '<child link="base_link"/><axis xyz="0 1 0"/><limit lower="0" upper="3000"/></joint>'
+    )
+    with pytest.raises(InputError, match="3000 looks like millimeters: 3 m") as caught:
+        load(written(ARM, '<link name="base_link">', rail + '<link name="base_link">'))
+    assert caught.value.field == "joint[rail_joint].limit"

@@ -17,7 +17,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import sizes
 from cellcolor.frontend.parts import rounding
 from cellcolor.frontend.parts.mesh import mesh_surface
-from cellcolor.frontend.parts.rounding import longest_beside_sharp, rounded
+from cellcolor.frontend.parts.rounding import longest_beside_sharp, note_on_triangles, rounded
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.mesh.dividing import halved
 from cellcolor.mesh.triangle_mesh import TriangleMesh
@@ -177,6 +177,15 @@ def test_the_longest_edge_beside_a_sharp_one() -> None:
         np.hypot(4, 12)
     )
     assert not longest_beside_sharp(surface_of(trimesh.creation.icosphere(3)))
+
+
+@pytest.mark.parametrize(("radius", "said"), [(0.0142, 0), (0.0141, 1)])
+def test_long_triangles_beside_sharp_edges_are_said(radius: float, said: int) -> None:
+    """From half the radius on: the diagonals of squares of 5 mm have 7.07 mm."""
+    box = surface_of(trimesh.creation.box((0.01, 0.01, 0.01)).subdivide())
+    notes = note_on_triangles(box, radius)
+    assert len(notes) == said
+    assert all("up to 7.1 mm long" in n and "(max_edge_m = 0.00705 under" in n for n in notes)
 
 
 def test_a_mesh_in_a_scene_has_the_radius_of_the_tool() -> None:

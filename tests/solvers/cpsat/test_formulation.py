@@ -26,7 +26,7 @@ from cellcolor.errors import InputError, RefusedResult, TooLarge
 from cellcolor.lab.families import SMALL, planar_graph
 from cellcolor.lab.families import hub as random_hub
 from cellcolor.solvers.checked import solve
-from cellcolor.solvers.cpsat import CompleteModel, formulation
+from cellcolor.solvers.cpsat import CompleteModel, complete_model
 from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT
 from cellcolor.solvers.cpsat.dart_graph import complete_graph
 from cellcolor.solvers.cpsat.drawing import sector_colors
@@ -236,7 +236,7 @@ def test_a_wrong_group_is_named() -> None:
 
 
 def test_a_model_that_would_be_too_large_is_not_built(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(formulation, "MOST_LITERALS", 10)
+    monkeypatch.setattr(complete_model, "MOST_LITERALS", 10)
     with pytest.raises(TooLarge, match="was not built: it would need"):
         cellcolor.formulation("wok")
 

@@ -30,7 +30,7 @@ SEEDS = st.integers(0, 10**6)
 
 
 def at_random(graph: DartGraph, seed: int) -> Painting:
-    """Every sector in any color of its cell, and leaf darts attached to any sectors of their color.
+    """Every sector in any color of its cell, and lone darts attached to any sectors of their color.
 
     A few colors are preferred, so that sub-cells have some darts.
     """
@@ -42,9 +42,9 @@ def at_random(graph: DartGraph, seed: int) -> Painting:
         for cell in sectors.cell
     ]
     attached = {}
-    for leaf, hosts in sectors.hosts.items():
-        if own := [host for host in hosts if colors[host] == colors[leaf]]:
-            attached[leaf] = rng.choice(own)
+    for lone, hosts in sectors.hosts.items():
+        if own := [host for host in hosts if colors[host] == colors[lone]]:
+            attached[lone] = rng.choice(own)
     return painting_of_sectors(sectors, colors, attached)
 
 

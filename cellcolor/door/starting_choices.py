@@ -1,0 +1,291 @@
+"""What ``cellcolor.new`` chooses: the flange, joints that stand still, the side, the home."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from cellcolor.data.candidate_table import VALID
+from cellcolor.errors import InputError
+
+if TYPE_CHECKING:
+    import xml.etree.ElementTree as ET
+
+    from cellcolor.arrays import Array, Index, Mask
+    from cellcolor.frontend.arm.urdf import Urdf
+    from cellcolor.frontend.parts.surface import Surface
+    from cellcolor.frontend.prepared import PreparedScene
+    from cellcolor.mesh.triangle_mesh import TriangleMesh
+
+Outside = Literal["toward", "away", "flip"]
+CoverChoice = Literal["largest", "all"]
+
+_TOWARD = np.array([-1.0, 0.0, 1.0]) / np.sqrt(2)  # the part lies before the robot: up and back
+_ALONG = 1e-3  # rad; an axis so near to another one is along it
+_AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
+_ANY_WAY = 0.2  # the mean of the unit normals of what faces every way is shorter
+_LARGER = 1.02  # times the inner side's area has a shell's outer one, if it is bent
+_ABOVE = (0.1, 0.15, 0.05, 0.2)  # m; so far over the part the arm waits, the first that is free
+_MOST = 300  # vertices that are asked for the posture
+_NEARLY = 0.9  # of what the best posture covers
+
+
+def last_link(parent: dict[str, str]) -> str:
+    """The link farthest from the root; of several the first."""
+    if not parent:
+        return ""
+
+    def depth(link: str) -> int:
+        count = 0
+        while link in parent:
+            link, count = parent[link], count + 1
+        return count
+
+    return max(parent, key=depth)
+
+
+def is_weightless(tool: Urdf) -> bool:
+    """Whether a link with a shape has no mass."""
+    links = {link.get("name", ""): link for link in tool.xml.findall("link")}
+    return any(links[name].find("inertial") is None for name in tool.shapes)
+
+
+def mount_line(arm: Urdf, flange: str) -> str:
+    """The setup's line that turns the tool's z axis onto the last joint's, if it is not there.
+
+    Some vendors' flanges have their x axis along that of the joint.
+    """
+    from cellcolor.frontend.parts.placement import rpy_from_rotation
+
+    x, y, z = _last_axis(arm, flange)
+    along = np.hypot(x, y) < _ALONG
+    if along and z > 0:
+        return ""
+    # Turned about the axis across both.
+    cross = np.array([[0, 0, x], [0, 0, y], [-x, -y, 0]])
+    onto = np.diag([1, -1, -1]) if along else np.eye(3) + cross + cross @ cross / (1 + z)
+    angles = [round(angle, 9) + 0.0 for angle in rpy_from_rotation(onto)]
+    return f"mount_rpy_rad = {angles}   # turns the tool's z axis onto the last joint's\n"
+
+
+def _last_axis(arm: Urdf, flange: str) -> Array:
+    """The last axis (3,) before the flange, in its frame; outward with all joints at zero."""
+    from cellcolor.frontend.parts.placement import rotation_from_rpy
+
+    joints = {joint.get("name"): joint for joint in arm.xml.findall("joint")}
+    turn, out, link = np.eye(3), np.zeros(3), flange  # of the flange, seen from a link before it
+    axis: Array | None = None
+    while link in arm.parent:
+        joint = joints[arm.joint_above[link]]
+        if axis is None and arm.joint_above[link] in arm.kinds:
+            axis = _numbers(joint.find("axis"), "xyz", "1 0 0") @ turn
+            axis /= np.linalg.norm(axis)
+        if axis is not None and abs(ahead := axis @ (out @ turn)) > _AHEAD:
+            return np.asarray(axis * np.sign(ahead))
+        xyz, rpy = (_numbers(joint.find("origin"), key, "0 0 0") for key in ("xyz", "rpy"))
+        rotation = rotation_from_rpy(*rpy)
+        turn, out, link = rotation @ turn, xyz + rotation @ out, arm.parent[link]
+    return np.array([0.0, 0.0, 1.0]) if axis is None else axis
+
+
+def _numbers(element: ET.Element | None, key: str, usual: str) -> Array:
+    return np.array((usual if element is None else element.get(key, usual)).split(), dtype=float)
+
+
+def fixed_of(arm: Urdf, flange: str, given: Mapping[str, float]) -> dict[str, float]:
+    """The positions of joints that stand still: those given, rails, and what is beside the chain.
+
+    Where none is given, the one nearest to zero.
+    """
+    from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC
+
+    in_chain = {arm.joint_above[link] for link in arm.chain(flange)[1:]}
+    joints = {joint.get("name", ""): joint for joint in arm.xml.findall("joint")}
+    fixed = dict(given)
+    for name, kind in arm.kinds.items():
+        if name not in fixed and (kind == PRISMATIC or name not in in_chain):
+            limit = None if kind == CONTINUOUS else joints[name].find("limit")
+            ends = (0.0, 0.0)
+            if limit is not None:
+                ends = float(limit.get("lower", 0)), float(limit.get("upper", 0))
+            fixed[name] = float(np.clip(0.0, *ends))
+    return fixed
+
+
+def fixed_line(fixed: Mapping[str, float]) -> str:
+    """The setup's line on joints that stand still, if there are any."""
+    if not fixed:
+        return ""
+    joints = ", ".join(f"{json.dumps(name)} = {position!r}" for name, position in fixed.items())
+    return f"fixed_joints = {{ {joints} }}   # joints that stand still, rad or m\n"
+
+
+@dataclass(frozen=True)
+class Side:
+    """Which side of the part is covered: what is filled into the scene's text, and what to say."""
+
+    keys: dict[str, str]
+    note: str
+
+
+def side_of(surface: Surface, outside: Outside | None, cover: CoverChoice | None) -> Side:
+    """The side that is asked for, or the likely one.
+
+    Of a shell that is the outer one, or the one that faces up; of any other part all of it, as its
+    faces are wound.
+
+    Args:
+        surface: the part as its file has it, m.
+
+    Raises:
+        InputError: the part has no such side.
+    """
+    from cellcolor.frontend.parts.sides import facing, pieces, shell_sides, thickness
+
+    mesh = surface.mesh
+    thick = thickness(mesh)
+    sides = None if thick is None else shell_sides(mesh)
+    if thick is not None and sides is not None and cover != "all":
+        number, name, other = _side(mesh, sides, outside)
+        return Side(
+            {"flip": "", "cover": _cover(mesh, sides[number])},
+            f"the part is a shell, {1e3 * thick:.2g} mm thick: its {name} is covered ({other} for "
+            "the other one, --cover all for both)",
+        )
+    flip = _flipped(mesh, outside)
+    mean = facing(mesh) * (-1 if flip else 1)
+    note = "all of the part is covered"
+    keys = {"flip": "flip = true                         # the other side is the outside\n"}
+    keys = {"flip": keys["flip"] if flip else "", "cover": ""}
+    if cover == "largest":
+        largest = pieces(mesh)[0]
+        if not largest.all():
+            keys["cover"] = _cover(mesh, largest)
+            note = "the largest piece between sharp edges is covered"
+    if mesh.border.any():
+        wound = "turned over, its outside" if flip else "as its faces are wound, its outside"
+        other = "without --outside" if flip else "--outside flip"
+        note += f"; {wound} faces {_way(mean)} ({other} for the other side)"
+    elif thick is not None:
+        note += f", both sides of a shell {1e3 * thick:.2g} mm thick ([cover] chooses one)"
+    return Side(keys, note)
+
+
+def _side(mesh: TriangleMesh, sides: list[Mask], outside: Outside | None) -> tuple[int, str, str]:
+    """Which of the two sides of a shell is covered, its name, and how to ask for the other one.
+
+    Without a wish that is the outer one; of a flat shell the one that faces up and to the robot.
+    """
+    from cellcolor.frontend.parts.sides import facing
+
+    first, second = (facing(mesh, side) for side in sides)
+    areas = [float(mesh.areas[side].sum()) for side in sides]
+    bent = areas[0] > _LARGER * areas[1]
+    toward = int(second @ _TOWARD > first @ _TOWARD)
+    usual = 0 if bent else toward
+    chosen = {None: usual, "toward": toward, "away": 1 - toward, "flip": 1 - usual}[outside]
+    name = ("outer side", "inner side")[chosen] if bent else "side"
+    name += f", which faces {_way((first, second)[chosen])},"
+    return chosen, name, "--outside flip" if chosen == usual else "without --outside"
+
+
+def _flipped(mesh: TriangleMesh, outside: Outside | None) -> bool:
+    """Whether the faces of an open part have to be turned over.
+
+    Raises:
+        InputError: it is closed, or faces every way.
+    """
+    from cellcolor.frontend.parts.sides import facing
+
+    if outside is None:
+        return False
+    if not mesh.border.any():
+        message = "the part is closed and no shell: its outside is where its volume is not"
+        raise InputError(None, "--outside", message)
+    if outside == "flip":
+        return True
+    mean = facing(mesh)
+    if np.linalg.norm(mean) < _ANY_WAY:
+        raise InputError(None, "--outside", "the part faces every way: flip turns it over")
+    return bool((mean @ _TOWARD > 0) != (outside == "toward"))
+
+
+def _cover(mesh: TriangleMesh, faces: Mask) -> str:
+    """The scene's table for one side."""
+    from cellcolor.frontend.parts.sides import SHARP_RAD, inner_point
+
+    seed = [round(x, 6) + 0.0 for x in inner_point(mesh, faces).tolist()]
+    return (
+        "\n# The faces around a point, up to sharp edges; the rest must only not be hit.\n"
+        f"[cover]\nregion = {{ seed_m = {json.dumps(seed)}, sharp_rad = {SHARP_RAD} }}\n"
+    )
+
+
+def _way(mean: Array) -> str:
+    """Where a mean of normals points, for one who stands at the robot."""
+    names = ("towards the robot", "away from it", "left", "right", "up", "down")
+    ways = np.array([[-1, 0, 0], [1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]])
+    if np.linalg.norm(mean) < _ANY_WAY:
+        return "every way"
+    return names[int(np.argmax(ways @ mean))]
+
+
+def _home_over(prepared: PreparedScene) -> tuple[list[float], str] | None:
+    """A free, well-conditioned position over the part's middle, rad, and its posture in words.
+
+    The tool points at the part. Of the postures that cover nearly as much as the best one, the one
+    whose joints are nearest to the middle of their limits. None if there is none.
+    """
+    from cellcolor.motion.free_space import FreeSpace
+    from cellcolor.motion.limits import motion_of
+
+    surface, arm = prepared.surface, prepared.arm
+    step = -(-len(surface.vertices) // _MOST)
+    solved = arm.inverse(surface.vertices[::step], -surface.normals[::step])
+    verdicts = prepared.judge(solved.reshape(-1, solved.shape[2]))
+    covers = (verdicts.reasons == VALID).reshape(solved.shape[:2]).mean(axis=0)
+    middle = (surface.vertices.min(axis=0) + surface.vertices.max(axis=0)) / 2
+    nearest: Index = np.argsort(np.linalg.norm(surface.vertices - middle, axis=1))[:3]
+    free = FreeSpace(prepared, motion_of(prepared).clearance_m)
+    lower, upper = (np.clip(limit, -np.pi, np.pi) for limit in free.space.limits)
+    names = prepared.kinematics.branches if arm.named else ()
+    for above in _ABOVE:
+        points = surface.vertices[nearest] + above * surface.normals[nearest]
+        found = arm.inverse(points, -surface.normals[nearest])
+        branch = np.tile(np.arange(found.shape[1]), len(nearest))
+        tried = np.round(found.reshape(-1, found.shape[2]), 2)
+        good = ~np.isnan(tried[:, 0])
+        if names:
+            good &= (covers >= _NEARLY * covers.max())[branch]
+        rows = np.flatnonzero(good)
+        rows = rows[prepared.judge(tried[rows]).reasons == VALID]
+        rows = rows[free(tried[rows])]
+        if len(rows):
+            best = rows[np.argmin(free.space.largest(tried[rows] - (lower + upper) / 2))]
+            where = f"{1e3 * above:g} mm over the part"
+            posture = f"{names[branch[best]]}, {where}" if names else where
+            return [float(angle) + 0.0 for angle in tried[best]], posture
+    return None
+
+
+def home_of(prepared: PreparedScene) -> tuple[list[float] | None, str]:
+    """A free position over the part, or near the middle of the joints' limits, rad; and which."""
+    from cellcolor.motion.free_space import FreeSpace
+    from cellcolor.motion.home import free_near
+    from cellcolor.motion.limits import motion_of
+
+    over = _home_over(prepared)
+    if over is not None:
+        return over[0], f"the arm begins and ends {over[1]}"
+    robot = prepared.robot
+    lower = np.where(np.isfinite(robot.lower), robot.lower, -np.pi)
+    upper = np.where(np.isfinite(robot.upper), robot.upper, np.pi)
+    free = FreeSpace(prepared, motion_of(prepared).clearance_m)
+    home = free_near(free, np.round((lower + upper) / 2, 2))
+    if home is None:
+        return None, "no free home position was found: the motion may begin and end anywhere"
+    return home, "the arm begins and ends near the middle of its limits: none over the part is free"

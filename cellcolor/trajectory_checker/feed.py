@@ -1,0 +1,156 @@
+"""How steadily the tool moves along each stroke, and what slows it down."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from cellcolor.arrays import Array
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import StrokeFeed
+from cellcolor.frontend.setup import Motion
+from cellcolor.trajectory_checker.dense import Dense
+from cellcolor.trajectory_checker.fault_list import FaultList
+from cellcolor.trajectory_checker.joint_motion import JointLimits
+from cellcolor.trajectory_checker.tolerances import AT_LIMIT, POSE_ROUNDING, SHARE_OVER_LIMIT, SLOW
+
+_Limit = Literal["velocity", "acceleration"]
+_LIMITS: tuple[_Limit, ...] = ("velocity", "acceleration")
+_LEAST_STEP = 1e-9  # m; a tip that stands still comes as far, so that ways ascend
+
+
+def judge_feed(
+    trajectory: Trajectory,
+    dense: Dense,
+    limits: JointLimits,
+    motion: Motion,
+    faults: FaultList,
+) -> tuple[StrokeFeed, ...]:
+    """The feed of each stroke; note where it is lower than the setup allows.
+
+    Args:
+        dense: the trajectory with configurations in between, along which lengths are measured.
+        motion: with the asked feed and the least one.
+    """
+    steps, passed = _steps(trajectory, dense), np.diff(trajectory.times)
+    load = _load(trajectory, limits)
+    asked, window = motion.speed_m_per_s, 2 * motion.tool_radius_m
+    found = []
+    for first, after in trajectory.strokes:
+        own = slice(first, after - 1)
+        if after - first < 2 or (passed[own] <= 0).any():
+            continue  # one sample has no feed; times that do not ascend are faults of their own
+        lowest, at = lowest_feed(passed[own], steps[own], window)
+        slow = steps[own] < SLOW * asked * passed[own]
+        joint, by = _limiting(load[:, own], slow * passed[own])
+        seconds, length = float(passed[own].sum()), float(steps[own].sum())
+        one = StrokeFeed(
+            segment=int(trajectory.segment[first]),
+            time=float(trajectory.times[first]),
+            seconds=seconds,
+            asked_m_per_s=asked,
+            mean_m_per_s=length / seconds,
+            lowest_m_per_s=lowest,
+            window_m=window,
+            slow_share=float((slow * passed[own]).sum()) / seconds,
+            joint=None if joint is None else trajectory.joint_names[joint],
+            limited_by=by,
+        )
+        found.append(one)
+        least = (motion.least_feed or 0.0) * asked
+        if lowest < least * (1 - SHARE_OVER_LIMIT):
+            low = f"the feed is {lowest:.4g} m/s over {1e3 * window:g} mm"
+            text = f"{low}, at least {least:.4g} is asked for{one.why}"
+            place = trajectory.points[first + at]
+            faults.add("feed", text, first + at, joint=joint, place=place)
+    return tuple(found)
+
+
+def judge_transfers(
+    trajectory: Trajectory, dense: Dense, motion: Motion, faults: FaultList
+) -> None:
+    """Note where the tip is faster than the setup allows without contact."""
+    most = motion.transfer_speed_m_per_s
+    if most is None:
+        return
+    passed = np.diff(trajectory.times)
+    moves = (passed > 0) & ~(trajectory.contact[1:] & trajectory.contact[:-1])
+    moves[[sample for sample in trajectory.unplanned if sample < len(moves)]] = False
+    speed = np.where(moves, _steps(trajectory, dense) / np.where(passed > 0, passed, 1.0), 0.0)
+    over = speed > most * (1 + SHARE_OVER_LIMIT) + POSE_ROUNDING / np.where(moves, passed, 1.0)
+    faults.add_stretches(
+        "velocity",
+        over,
+        speed,
+        lambda k: f"the tool moves at {speed[k]:.4g} m/s between strokes, allowed: {most:.4g}",
+        trajectory.points,
+    )
+
+
+def _steps(trajectory: Trajectory, dense: Dense) -> Array:
+    """(k - 1,) how far the tip goes from each sample to the next, m."""
+    steps = np.zeros(max(len(trajectory.times) - 1, 0))
+    np.add.at(steps, dense.sample[:-1], np.linalg.norm(np.diff(dense.tips, axis=0), axis=1))
+    return steps
+
+
+def lowest_feed(passed: Array, steps: Array, window: float) -> tuple[float, int]:
+    """The lowest mean feed over a stretch as long as the window, m/s, and the step it begins in.
+
+    A stroke begins and ends at rest. So its first and its last stretch of that length do not count;
+    if it is not three times as long, its mean is all there is.
+
+    Args:
+        passed: (k,) seconds of each step.
+        steps: (k,) how far the tip goes, m.
+    """
+    way = np.concatenate([[0.0], np.cumsum(np.maximum(steps, _LEAST_STEP))])
+    times = np.concatenate([[0.0], np.cumsum(passed)])
+    if way[-1] < 3 * window:
+        return float(way[-1] / times[-1]), 0
+    # The mean is extreme where the stretch begins or ends at a sample.
+    begins = np.concatenate([way, way - window, [window, way[-1] - 2 * window]])
+    begins = begins[(begins >= window) & (begins <= way[-1] - 2 * window)]
+    taken = np.interp(begins + window, way, times) - np.interp(begins, way, times)
+    worst = int(np.argmax(taken))
+    at = int(np.searchsorted(way, begins[worst], side="right")) - 1
+    return float(window / taken[worst]), at
+
+
+def _load(trajectory: Trajectory, limits: JointLimits) -> Array:
+    """(2, k - 1, joints): of each step the share of each limit of velocity and of acceleration."""
+    passed = np.diff(trajectory.times)[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        velocity = np.diff(trajectory.joints, axis=0) / passed
+        load = np.zeros((2, *velocity.shape))
+        load[0] = np.abs(velocity) / limits.velocity
+        if limits.acceleration is not None and len(velocity) > 1:
+            middles = (passed[1:] + passed[:-1]) / 2
+            found = np.abs(np.diff(velocity, axis=0)) / middles / limits.acceleration
+            load[1, 1:] = found
+            load[1, :-1] = np.maximum(load[1, :-1], found)
+    return np.nan_to_num(load)
+
+
+def _limiting(load: Array, slow_s: Array) -> tuple[int | None, _Limit | None]:
+    """The joint and the limit that slow a stroke down for the longest time.
+
+    Where none is near its limit in slow steps, as in a stroke that is slow throughout for the sake
+    of one place, it is the one that is nearest anywhere; None if that is not near either.
+
+    Args:
+        load: (2, k, joints) of :func:`_load`.
+        slow_s: (k,) seconds of the steps that are slow, 0 for others.
+    """
+    if not np.any(slow_s):
+        return None, None
+    most = load.max(axis=(0, 2))
+    held = np.where(most >= AT_LIMIT, slow_s, 0.0)
+    weight = np.asarray((load == most[:, None]) * held[:, None]).sum(axis=1)
+    if not weight.any():
+        weight = np.where(load >= AT_LIMIT, load, 0.0).max(axis=1)
+    if not weight.any():
+        return None, None
+    kind, joint = np.unravel_index(int(np.argmax(weight)), weight.shape)
+    return int(joint), _LIMITS[kind]
