@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from os import PathLike
 
@@ -44,6 +44,16 @@ def naming(file: str | PathLike[str] | None) -> Iterator[None]:
         if error.file or file is None:
             raise
         raise error.in_file(str(file)) from error
+
+
+def refuse(faults: Iterable[tuple[str, str]]) -> None:
+    """Raise the first of some faults, each a field and what is wrong with it.
+
+    Raises:
+        InputError: there is one.
+    """
+    for field, message in faults:
+        raise InputError(None, field, message)
 
 
 @contextmanager

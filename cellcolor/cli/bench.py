@@ -10,13 +10,14 @@ import click
 
 from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import (
-    CLUSTER,
-    JOBS,
     PATH,
     SECONDS,
     Commands,
+    Count,
     cellcolor,
+    option,
     output_option,
+    shared,
 )
 from cellcolor.cli.terminal import say, say_lines
 from cellcolor.errors import InputError, system_errors
@@ -50,59 +51,40 @@ def bench() -> None:
 
 @bench.command()
 @click.argument("subjects", metavar="FAMILY|FILE…", nargs=-1, required=True)
-@click.option(
+@option(
     "--solver",
-    "solvers",
+    None,
+    "Solver; repeat the option for several.",
+    to="solvers",
+    default=(PAPERS, REFERENCE, DEFAULT),
     metavar="NAME[@WORKERS]",
     multiple=True,
-    default=(PAPERS, REFERENCE, DEFAULT),
-    show_default=True,
-    help="Solver; repeat the option for several.",
 )
-@click.option(
-    "--seeds",
-    metavar="N-M",
-    callback=_numbers,
-    default="0-9",
-    show_default=True,
-    help="Of families.",
-)
-@click.option(
+@option("--seeds", None, "Of families.", default="0-9", metavar="N-M", callback=_numbers)
+@option(
     "--time-limit",
-    "limits",
-    metavar="S",
-    type=SECONDS,
-    multiple=True,
+    SECONDS,
+    "Seconds for each solve; several are tried in turn.",
+    to="limits",
     default=(10.0,),
-    show_default=True,
-    help="Seconds for each solve; several are tried in turn.",
+    multiple=True,
 )
-@click.option(
+@option(
     "--repetitions",
-    metavar="N",
-    type=click.IntRange(min=1),
+    Count(1),
+    "Repetitions of each run, with other random numbers in the solver.",
     default=1,
-    show_default=True,
-    help="Repetitions of each run, with other random numbers in the solver.",
 )
-@click.option(
-    "--search-space",
-    type=click.Choice(["paper", "surface"]),
-    default="paper",
-    show_default=True,
-    help="As with solve.",
-)
-@click.option(
+@shared("search_space")
+@option(
     "--memory",
-    "megabytes",
-    metavar="MB",
-    type=click.IntRange(min=1),
+    Count(1),
+    "Memory for each run; a run that needs more is killed.",
+    to="megabytes",
     default=4096,
-    show_default=True,
-    help="Memory for each run; a run that needs more is killed.",
+    metavar="MB",
 )
-@click.option("--jobs", default=1, **JOBS)
-@CLUSTER
+@shared("jobs", "cluster")
 @output_option(
     "TABLE.csv", "A row for each run. An existing table is continued: its runs are not repeated."
 )

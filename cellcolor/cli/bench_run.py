@@ -11,19 +11,15 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rich import box
-from rich.table import Table
-
 from cellcolor.cli.ending import Exit
 from cellcolor.cli.inputs import read_instance
 from cellcolor.cli.progress import progress_bar, workers_for
-from cellcolor.cli.tables import console
-from cellcolor.cli.terminal import complain, shown
+from cellcolor.cli.terminal import complain, say, say_lines, shown
 from cellcolor.data.wording import count
 from cellcolor.door.shipped import find_file, library
 from cellcolor.errors import CellcolorError, InputError, SolverMissing
-from cellcolor.lab.runs.row import Row, by, disagreements
-from cellcolor.lab.runs.statistics import contestants_of, median_seconds
+from cellcolor.lab.runs.row import Row, disagreements
+from cellcolor.lab.runs.summary import summary_of_runs
 from cellcolor.lab.runs.sweep import (
     Contestant,
     Specimen,
@@ -37,9 +33,6 @@ from cellcolor.lab.runs.table import TableFile
 
 _LIBRARY = "library"
 """Stands before the families of the library's graphs (docs/library.md)."""
-
-_SHOWN = 60
-"""Instances that are listed at the end; more are for ``bench summary``."""
 
 
 def run_solvers(
@@ -94,7 +87,13 @@ def run_solvers(
             interrupted = True
             complain("interrupted")
     wrong = disagreements([*before, *made])
-    _print(made, sweep, wrong)
+    if made:
+        say_lines("\n".join(summary_of_runs(made)))
+    already = f", {sweep.skipped} left out or already there" if sweep.skipped else ""
+    proved = sum(row.solved for row in made)
+    say(f"{count(len(made), 'run')}, {proved} with a proved minimum{already}")
+    for line in wrong:
+        complain(line)
     if bad:
         return Exit.BAD_INPUT
     if wrong:
@@ -142,48 +141,3 @@ def _contestants(names: Sequence[str]) -> Iterator[Contestant]:
             yield contestant(name)
         except SolverMissing as error:
             complain(f"left out: {error}")
-
-
-def _print(made: Sequence[Row], sweep: Sweep, wrong: Sequence[str]) -> None:
-    """Print a line for each instance, unless there are many, and one for all."""
-    groups = by(made, lambda row: (row.subject, row.sha256, row.limit))
-    if made and len(groups) <= _SHOWN:
-        names = contestants_of(made)
-        table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-        table.add_column("instance", overflow="fold")
-        for head in ("cells", "most live darts", "segments", *(f"{s} seconds" for s in names)):
-            table.add_column(head, justify="right")
-        for (subject, _, _), own in groups.items():
-            runs = by(own, lambda row: row.contestant)
-            table.add_row(
-                shown(subject),
-                str(own[0].cells),
-                str(own[0].live_darts),
-                _segments(own),
-                *(_seconds(runs.get(name, [])) for name in names),
-            )
-        console().print(table)
-    already = f", {sweep.skipped} left out or already there" if sweep.skipped else ""
-    proved = sum(row.solved for row in made)
-    console().print(f"{count(len(made), 'run')}, {proved} with a proved minimum{already}")
-    for line in wrong:
-        complain(line)
-
-
-def _segments(rows: Sequence[Row]) -> str:
-    """The minimum, or what is known of it."""
-    found = [row.segments for row in rows if row.segments is not None]
-    if not found:
-        return "?"
-    proved = any(row.status == "optimal" for row in rows)
-    return str(min(found)) if proved else f"<= {min(found)}"
-
-
-def _seconds(rows: Sequence[Row]) -> str:
-    """The median of the repetitions, or how they ended if most proved nothing."""
-    if not rows:
-        return ""
-    if 2 * sum(row.solved for row in rows) > len(rows):
-        return f"{median_seconds(rows):.3f}"
-    ends = {row.status for row in rows if not row.solved}
-    return "not proved" if ends <= {"feasible", "unknown", "optimal"} else ", ".join(sorted(ends))

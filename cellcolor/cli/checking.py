@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -34,12 +33,12 @@ from cellcolor.door.leaving_out import left_alone
 from cellcolor.door.reading import format_of_claim, read_trajectory
 from cellcolor.door.shipped import find_claim, find_file
 from cellcolor.door.subject import Subject
-from cellcolor.errors import CellcolorError, InputError
+from cellcolor.errors import CellcolorError, InputError, naming
 from cellcolor.files.writing import is_folder_or_nothing
 from cellcolor.questions.places import Place
 
 if TYPE_CHECKING:
-    from cellcolor.oracle import Improvement, Verdict
+    from cellcolor.oracle import Verdict
 
 _VIOLATIONS = 100  # of a plan that are listed
 
@@ -66,62 +65,44 @@ class Request:
     require_optimal: bool
     as_json: bool
 
-    @property
-    def of_plans(self) -> str | None:
-        """The first option given that only a plan can have."""
-        given = {
-            "--cache": self.cache is not None,
-            "--better": self.better is not None,
-            "--require-optimal": self.require_optimal,
-        }
-        return next((name for name, is_given in given.items() if is_given), None)
+    def opened(self, deadline: Deadline) -> Subject:
+        """The subject; one from standard input lies beside no other file."""
+        if self.subject != STANDARD_INPUT:
+            subject = read_subject(find_file(self.subject), deadline, self.tolerance)
+        else:
+            with input_file(STANDARD_INPUT) as copy:
+                subject = replace(read_subject(copy, deadline), path=None)
+        return left_alone(subject, self.left_alone)
 
 
 def check_files(request: Request) -> Exit:
     """Say whether a claim is valid, and what its numbers are."""
+    late, form = (request.subject, "surface"), None
     try:
-        with input_file(request.claim) as claim:
-            copied = request.claim == STANDARD_INPUT
-            return _check(request, claim if copied else find_claim(request.claim))
+        with input_file(request.claim) as copy:
+            claim = copy if request.claim == STANDARD_INPUT else find_claim(request.claim)
+            form = format_of_claim(claim)  # anything else is read as a solution
+            for option in ("cache", "better", "require_optimal"):
+                if getattr(request, option) and form != Plan.FORMAT:
+                    message = f"goes with a plan; {name_of(request.claim)} is none"
+                    raise InputError(None, f"--{option.replace('_', '-')}", message)
+            if form == Trajectory.FORMAT:
+                late = (request.claim, "verdict")
+                return _check_trajectory(request, claim)
+            with naming(name_of("-") if request.subject == STANDARD_INPUT else None):
+                if form == Plan.FORMAT:
+                    return _check_plan(request, claim)
+                return _check_solution(request, claim)
+    except OutOfTime:
+        message = f"unknown: the time limit came before there was a {late[1]}; see --time-limit"
+        return _no_verdict(request, InputError(name_of(late[0]), None, message), Exit.STOPPED)
     except CellcolorError as error:
         at = error if isinstance(error, InputError) else InputError(None, None, str(error))
         return _no_verdict(request, at, Exit.BAD_INPUT)
 
 
-def _check(request: Request, claim: Path) -> Exit:
-    form = format_of_claim(claim)  # anything else is read as a solution
-    if form != Plan.FORMAT and (option := request.of_plans):
-        raise InputError(None, option, f"goes with a plan; {name_of(request.claim)} is none")
-    if form == Trajectory.FORMAT:
-        return _check_trajectory(request, claim)
-    is_plan = form == Plan.FORMAT
-    try:
-        subject = _open(request, request.deadline if is_plan else NEVER)
-    except OutOfTime:
-        message = "unknown: the time limit came before there was a surface; see --time-limit"
-        at = InputError(name_of(request.subject), None, message)
-        return _no_verdict(request, at, Exit.STOPPED)
-    try:
-        if is_plan:
-            return _check_plan(request, subject, claim)
-        return _check_solution(request, subject, claim)
-    except InputError as error:
-        if error.file is None and request.subject == STANDARD_INPUT:
-            raise error.in_file(name_of(STANDARD_INPUT)) from error
-        raise
-
-
-def _open(request: Request, deadline: Deadline) -> Subject:
-    """The subject; one from standard input lies beside no other file."""
-    if request.subject != STANDARD_INPUT:
-        subject = read_subject(find_file(request.subject), deadline, request.tolerance)
-    else:
-        with input_file(STANDARD_INPUT) as copy:
-            subject = replace(read_subject(copy, deadline), path=None)
-    return left_alone(subject, request.left_alone)
-
-
-def _check_solution(request: Request, subject: Subject, claim: Path) -> Exit:
+def _check_solution(request: Request, claim: Path) -> Exit:
+    subject = request.opened(NEVER)
     verdict = _on_solution(subject, claim, request.claim)
     if request.as_json:
         print_json(verdict.to_document())
@@ -146,9 +127,8 @@ def _on_solution(subject: Subject, claim: Path, name: str) -> SolutionVerdict:
         scheme = check_scheme(instance, division)
         faults = [*scheme.problems, *scheme.not_canonical]
         if not faults and scheme.segments != solution.segments:
-            faults.append(
-                f"has {count(scheme.segments or 0, 'segment')}, the solution {solution.segments}"
-            )
+            segments = count(scheme.segments or 0, "segment")
+            faults.append(f"has {segments}, the solution {solution.segments}")
         key = scheme_key(division)
         if key in keys:
             faults.append("an earlier line has the same scheme")
@@ -169,7 +149,7 @@ def _on_solution(subject: Subject, claim: Path, name: str) -> SolutionVerdict:
         status=solution.status,
         solver=solution.solver,
         bounds=tuple(map(_checked, report.bounds)),
-        bounds_by_solver=sum(checked.trusted for checked in report.bounds),
+        bounds_by_solver=sum(found.trusted for found in report.bounds),
         claimed=claimed,
         schemes=schemes or None,
     )
@@ -181,8 +161,9 @@ def _checked(found: BoundVerdict) -> CheckedBound:
     return CheckedBound(bound.kind, bound.value, bound.holds_for, *outcome)
 
 
-def _check_plan(request: Request, subject: Subject, claim: Path) -> Exit:
+def _check_plan(request: Request, claim: Path) -> Exit:
     """Say what is known of a plan; write a better painting where one is known and asked for."""
+    subject = request.opened(request.deadline)
     if not subject.names_surface:
         if subject.path is None and subject.given_instance is not None:
             raise InputError(None, "surface", subject.why_no_surface)
@@ -201,54 +182,42 @@ def _check_plan(request: Request, subject: Subject, claim: Path) -> Exit:
     found = oracle.judge(claim, deadline=request.deadline)
     if request.better is not None and found.improvement is not None:
         write_painted(found.improvement.better.painted, request.better, inputs)
-    verdict = _described(request.claim, found)
     if request.as_json:
-        print_json(verdict.to_document())
+        print_json(_described(request.claim, found).to_document())
     else:
-        say_plan(name_of(request.claim), verdict)
-    if not verdict.valid:
+        say_plan(name_of(request.claim), found)
+    if not found.valid:
         return Exit.INVALID
-    if not request.require_optimal or verdict.optimal:
+    if not request.require_optimal or found.optimal:
         return Exit.DONE
-    return Exit.STOPPED if verdict.optimal is None else Exit.INVALID
+    return Exit.STOPPED if found.optimal is None else Exit.INVALID
 
 
 def _described(name: str, verdict: Verdict) -> PlanVerdict:
-    bounds, segments = verdict.bounds, verdict.segments
+    bounds, segments, better = verdict.bounds, verdict.segments, verdict.improvement
+    alike = ("valid", "problems", "segments", "lift_offs", "optimal", "beatable_by", "on_mesh")
+    improvement = None
+    if better is not None and segments is not None:
+        colors = better.better.on_mesh.vertex_colors
+        improvement = PlanImprovement(
+            *(better.joined, better.places, better.segments, better.segments_on_mesh),
+            vertex_colors=colors if better.segments_on_mesh < segments else None,
+        )
     return PlanVerdict(
         file=name,
-        valid=verdict.valid,
         text=str(verdict),
-        problems=verdict.problems,
         violation_count=len(verdict.violations),
         violations=tuple(
             PlanViolation(found.vertex, found.color, found.place, found.reason)
             for found in verdict.violations[:_VIOLATIONS]
         ),
-        segments=segments,
-        lift_offs=verdict.lift_offs,
         lower_bound=None if bounds is None else bounds.lower,
         upper_bound=None if bounds is None else bounds.upper,
-        optimal=verdict.optimal,
-        beatable_by=verdict.beatable_by,
         gap=None if bounds is None or segments is None else segments - bounds.lower,
-        on_mesh=verdict.on_mesh,
-        improvement=_improved(verdict.improvement, segments),
+        improvement=improvement,
         why=verdict.why,
         kept_lower_bound=verdict.kept_lower,
-    )
-
-
-def _improved(found: Improvement | None, segments: int | None) -> PlanImprovement | None:
-    if found is None or segments is None:
-        return None
-    fewer = found.segments_on_mesh < segments
-    return PlanImprovement(
-        joined=found.joined,
-        places=found.places,
-        segments=found.segments,
-        segments_on_mesh=found.segments_on_mesh,
-        vertex_colors=found.better.on_mesh.vertex_colors if fewer else None,
+        **{member: getattr(verdict, member) for member in alike},
     )
 
 
@@ -256,18 +225,12 @@ def _check_trajectory(request: Request, claim: Path) -> Exit:
     from cellcolor.door.judging import judge_trajectory
 
     given = read_trajectory(claim)
-    try:
-        subject = _open(request, request.deadline)
+    with naming(name_of(request.claim)):
+        subject = request.opened(request.deadline)
         with stages_of(Path(request.claim), "judging") as report:
             verdict = judge_trajectory(subject, given, request.deadline, report)
-    except InputError as error:
-        raise error if error.file else error.in_file(name_of(request.claim)) from error
-    except OutOfTime:
-        message = "unknown: the time limit came before there was a verdict; see --time-limit"
-        at = InputError(name_of(request.claim), None, message)
-        return _no_verdict(request, at, Exit.STOPPED)
     if request.as_json:
-        print_json({"file": request.claim} | json.loads(verdict.to_json()))
+        print_json({"file": request.claim} | verdict.to_document())
     else:
         say_trajectory(name_of(request.claim), verdict)
     return Exit.DONE if verdict.valid else Exit.INVALID

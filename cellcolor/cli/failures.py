@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import click
 
-from cellcolor.cli import ask, bench, label, minimum, motion, outside, parts  # noqa: F401, each adds its commands
+from cellcolor.cli import ask, bench, minimum, motion, outside, parts  # noqa: F401, each adds its commands
 from cellcolor.cli.ending import INTERRUPTS, Exit
 from cellcolor.cli.options import cellcolor
 from cellcolor.cli.terminal import complain, guarded_streams, shortened, shown

@@ -7,6 +7,7 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,7 +18,7 @@ from cellcolor.cli.terminal import complain
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.door.extras import extras_for
-from cellcolor.door.subject import Subject, build_scene, open_subject, scene_or_file
+from cellcolor.door.subject import Subject, open_subject, scene_or_file
 from cellcolor.errors import InputError, system_errors
 
 if TYPE_CHECKING:
@@ -48,26 +49,24 @@ def open_file(path: Path, deadline: Deadline = NEVER, tolerance: str | None = No
     """
     INTERRUPTS.check()
     with stages_of(path, "building") as report_stage:
-        if tolerance is None:
-            subject = open_subject(path, deadline, report_stage)
-        else:
-            built = build_scene(with_tolerance(path, tolerance), deadline, report_stage)
-            subject = Subject(path, built, built.surface)
+        subject = open_subject(with_tolerance(path, tolerance), deadline, report_stage)
     INTERRUPTS.check()
-    return subject
+    return replace(subject, path=path)
 
 
-def with_tolerance(path: Path, text: str) -> Scene:
+def with_tolerance(path: Path, text: str | None) -> Path | Scene:
     """A scene whose part may stand off.
 
     Args:
         path: of the scene.
         text: a length in ``mm`` or ``m``, an angle in ``deg`` or ``rad``, or both with a comma
-            between.
+            between; None leaves the scene as it is.
 
     Raises:
         InputError: the text is something else, or the file is no scene's.
     """
+    if text is None:
+        return path
     tolerance: dict[str, float] = {}
     for word in text.split(","):
         found = re.fullmatch(r"([0-9.eE+-]+)(mm|m|deg|rad)", word.strip())

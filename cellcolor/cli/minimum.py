@@ -6,25 +6,22 @@ import os
 import time
 from dataclasses import replace
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from cellcolor.cli.ending import INTERRUPTS, Exit
 from cellcolor.cli.options import (
-    COVER,
     INPUT,
-    LEFT_ALONE,
     PATH,
-    REQUIRED,
     SECONDS,
-    SEED,
-    TOLERANCE,
-    WORKERS,
+    Count,
     cellcolor,
     json_option,
     one_of,
+    option,
     output_option,
+    shared,
 )
 from cellcolor.cli.terminal import apart_from, complain, say, say_lines
 from cellcolor.data.wording import count
@@ -41,9 +38,6 @@ from cellcolor.files.writing import (
 from cellcolor.pictures.registry import PICTURES
 from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, PAPERS, REFERENCE, solver_names
 
-if TYPE_CHECKING:
-    from cellcolor.data.instance import Instance
-
 
 @cellcolor.command()
 @click.argument("source", metavar="SCENE.toml|SURFACE.json", type=INPUT)
@@ -53,16 +47,44 @@ def build(source: Path, output: Path) -> Exit:
 
     For a scene the labelled surface is written as well, beside the instance.
     """
+    from cellcolor.cli.inputs import open_file
     from cellcolor.cli.tables import nothing_to_cover
     from cellcolor.data.instance import Instance
-    from cellcolor.door.subject import is_scene
+    from cellcolor.data.surface import LabelledSurface
+    from cellcolor.door.subject import Subject, is_scene
 
     check_output(output, kind_of_format(Instance.FORMAT), [source])
     if is_scene(output):
         message = "must not end in .toml: the other commands would take it for a scene"
         raise InputError(str(output), None, message)
+    alone = is_stream(output)  # nothing lies beside a pipe, and nothing can be named from there
+    stem = output.name.removesuffix(".json")
+    surface_path = output.with_name(f"{stem}.surface.json")
+    side_path = output.with_name(f"{stem}.reasons.npz")
+    if is_scene(source) and not alone:
+        check_output(surface_path, kind_of_format(LabelledSurface.FORMAT), [source])
+        check_output(side_path, SIDE_FILE, [source])
     with apart_from(output):
-        instance = (_build_scene if is_scene(source) else _build_surface)(source, output)
+        subject = open_file(source)
+        if subject.given_instance is not None:
+            raise InputError(str(source), "format", "is an instance already")
+        beside: list[Output] = []
+        reference = os.path.relpath(source.resolve(), output.parent.resolve())
+        if (built := subject.built) is not None:
+            side = {"side_file": side_path.name}
+            surface = replace(built.surface, meta=built.surface.meta | side)
+            subject, reference = Subject(source, built, surface), surface_path.name
+            beside = [Output(side_path, SIDE_FILE, [built.candidates.to_bytes()])]
+            beside += [Output.of(surface_path, surface)]
+        named = None if alone else PurePath(reference).as_posix()
+        instance = subject.decomposed(named).instance
+        beside = [] if alone else beside
+        # The instance last: it carries the fingerprint of its surface.
+        write([*beside, Output.of(output, instance)], [source])
+        if built is not None:
+            say_lines(built.report)
+        for file in beside:
+            say(f"wrote {file.path}")
         say(f"wrote {output}: {instance.size}")
     if instance.nothing_to_cover:
         complain(f"{source}: {nothing_to_cover(instance)}")
@@ -70,103 +92,43 @@ def build(source: Path, output: Path) -> Exit:
     return Exit.DONE
 
 
-def _build_scene(source: Path, output: Path) -> Instance:
-    from cellcolor.cli.inputs import open_file
-    from cellcolor.data.surface import LabelledSurface
-    from cellcolor.door.subject import Subject
-
-    stem = output.name.removesuffix(".json")
-    surface_path = output.with_name(f"{stem}.surface.json")
-    side_path = output.with_name(f"{stem}.reasons.npz")
-    alone = is_stream(output)  # nothing lies beside a pipe, and nothing can be named from there
-    if not alone:
-        check_output(surface_path, kind_of_format(LabelledSurface.FORMAT), [source])
-        check_output(side_path, SIDE_FILE, [source])
-    built = open_file(source).built
-    assert built is not None
-    surface = replace(built.surface, meta=built.surface.meta | {"side_file": side_path.name})
-    named = Subject(source, built, surface)
-    instance = named.decomposed(None if alone else surface_path.name).instance
-    files = [Output.of(output, instance)]
-    if not alone:
-        # The instance last: it carries the fingerprint of its surface.
-        files = [
-            Output(side_path, SIDE_FILE, [built.candidates.to_bytes()]),
-            Output.of(surface_path, surface),
-            *files,
-        ]
-    write(files, [source])
-    say_lines(built.report)
-    for file in files[:-1]:
-        say(f"wrote {file.path}")
-    return instance
-
-
-def _build_surface(source: Path, output: Path) -> Instance:
-    from cellcolor.cli.inputs import open_file
-
-    found = open_file(source)
-    if found.given_instance is not None:
-        raise InputError(str(source), "format", "is an instance already")
-    relative = os.path.relpath(source.resolve(), output.parent.resolve())
-    reference = None if is_stream(output) else PurePath(relative).as_posix()
-    instance = found.decomposed(reference).instance
-    write([Output.of(output, instance)], [source])
-    return instance
-
-
 @cellcolor.command()
 @click.argument("files", metavar="FILE…", nargs=-1, required=True, type=INPUT)
 @output_option("OUT", "A file for one input, a folder for several.")
-@click.option(
+@option(
     "--solver",
+    None,
+    f"{', '.join(OWN_NAMES)}, or what another package registers. {PAPERS} is the paper's "
+    f"depth-first search, for small instances, and {REFERENCE} the same search with a bound.",
+    default=DEFAULT,
     metavar="NAME",
     callback=one_of(solver_names),
-    default=DEFAULT,
-    show_default=True,
-    help=f"{', '.join(OWN_NAMES)}, or what another package registers. {PAPERS} is the paper's "
-    f"depth-first search, for small instances, and {REFERENCE} the same search with a bound.",
 )
-@click.option(
-    "--search-space",
-    type=click.Choice(["paper", "surface"]),
-    default="paper",
-    show_default=True,
-    help="paper: no more than one corridor across an edge. surface: several.",
-)
-@click.option(
+@shared("search_space")
+@option(
     "--strands",
+    Count(1),
+    "Corridors that may cross an edge, in search space surface.  [default: 2]",
     metavar="K",
-    type=click.IntRange(min=1),
-    help="Corridors that may cross an edge, in search space surface.  [default: 2]",
 )
-@COVER
-@REQUIRED
-@LEFT_ALONE
-@TOLERANCE
+@shared("cover", "required", "left_alone", "tolerance")
 @click.option("--all", "every", is_flag=True, help="List all optimal schemes.")
-@click.option(
+@option(
     "--warm-start",
-    "start",
+    PATH,
+    "Start from this solution of the one file given.",
+    to="start",
     metavar="SOLUTION.json",
-    type=PATH,
-    help="Start from this solution of the one file given.",
 )
-@click.option(
-    "--limit",
-    metavar="N",
-    type=click.IntRange(min=1),
-    help="With --all, stop after this many schemes.  [default: 1000]",
-)
-@click.option(
+@option("--limit", Count(1), "With --all, stop after this many schemes.  [default: 1000]")
+@option(
     "--picture",
+    PATH,
+    "Best division and bounds over the seconds of the search.",
     metavar="OUT.(png|svg)",
-    type=PATH,
-    help="Best division and bounds over the seconds of the search.",
 )
-@click.option("--time-limit", metavar="S", type=SECONDS, help="Seconds for each file.")
-@WORKERS
-@SEED
+@option("--time-limit", SECONDS, "Seconds for each file.")
+@shared("workers", "seed")
 @json_option("Print JSON Lines, one solution per file.")
 def solve(
     files: tuple[Path, ...], every: bool, limit: int | None, picture: Path | None, **given: Any
@@ -216,31 +178,28 @@ def solve(
 @cellcolor.command()
 @click.argument("subject", metavar="FILE", type=click.Path())
 @click.argument("claim", metavar="SOLUTION.json|PLAN.json|TRAJECTORY", type=click.Path())
-@click.option(
+@option(
     "--time-limit",
-    "seconds",
-    metavar="S",
-    type=SECONDS,
+    SECONDS,
+    "Seconds, including reading, for a trajectory, or for the proven range that a plan is compared "
+    "with.",
+    to="seconds",
     default=60.0,
-    show_default=True,
-    help="Seconds, including reading, for a trajectory, or for the proven range that a plan is "
-    "compared with.",
 )
-@LEFT_ALONE
-@TOLERANCE
-@click.option(
+@shared("left_alone", "tolerance")
+@option(
     "--cache",
+    PATH,
+    "For a plan: keep the proven range there, so that the next plan on the same surface needs no "
+    "proof.",
     metavar="FOLDER",
-    type=PATH,
-    help="For a plan: keep the proven range there, so that the next plan on the same surface needs "
-    "no proof.",
 )
-@click.option(
+@option(
     "--better",
-    metavar="OUT.surface.json",
-    type=PATH,
-    help="For a plan that can be beaten: write a better painting, and beside it the plan as "
+    PATH,
+    "For a plan that can be beaten: write a better painting, and beside it the plan as "
     "OUT.plan.json.",
+    metavar="OUT.surface.json",
 )
 @click.option(
     "--require-optimal",
@@ -274,26 +233,21 @@ def check(seconds: float, **given: Any) -> Exit:
     type=INPUT,
 )
 @output_option("OUT.(html|png|svg)", "The picture; the ending gives its format.", required=True)
-@click.option(
+@option(
     "--view",
+    click.Choice(list(PICTURES)),
+    f"The picture: {', '.join(PICTURES)}. The options below also choose one.",
     metavar="NAME",
-    type=click.Choice(list(PICTURES)),
-    help=f"The picture: {', '.join(PICTURES)}. The options below also choose one.",
 )
-@click.option("--color", metavar="NAME|ID", help="Show where one color is available.")
+@option("--color", None, "Show where one color is available.", metavar="NAME|ID")
 @click.option(
     "--reason",
     is_flag=True,
     help="Show why points are out of reach, in the best branch or in one --branch.",
 )
 @click.option("--graph", is_flag=True, help="The topological graph.")
-@click.option(
-    "--vertex",
-    metavar="N",
-    type=click.IntRange(min=0),
-    help="Show the arm at a vertex, in a --branch.",
-)
-@click.option("--branch", metavar="NAME|ID", help="An inverse-kinematic branch.")
+@option("--vertex", Count(0), "Show the arm at a vertex, in a --branch.")
+@option("--branch", None, "An inverse-kinematic branch.", metavar="NAME|ID")
 def show(
     files: tuple[Path, ...], output: Path, view: str | None, reason: bool, graph: bool, **of: Any
 ) -> Exit:

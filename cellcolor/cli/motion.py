@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -12,18 +11,16 @@ import click
 
 from cellcolor.cli.ending import INTERRUPTS, Exit
 from cellcolor.cli.options import (
-    COVER,
     INPUT,
-    LEFT_ALONE,
     METRES,
     PATH,
-    REQUIRED,
-    TIME_LIMIT,
-    TOLERANCE,
+    Real,
     cellcolor,
     motion_options,
     one_of,
+    option,
     output_option,
+    shared,
 )
 from cellcolor.cli.progress import at_work, stages_of
 from cellcolor.cli.terminal import complain, say, say_lines
@@ -41,17 +38,17 @@ if TYPE_CHECKING:
 
 _ENDING = ".surface.json"
 _FAULTS = 5  # that plan prints
-_PATTERN = click.option(
+_PATTERN = option(
     "--pattern",
+    None,
+    f"Pattern of the tool paths: {', '.join(PATTERNS)}, or what another package registers. Rows of "
+    "back-and-forth run back-and-forth:X,Y,Z along a vector, back-and-forth:around:X,Y,Z around an "
+    "axis, or back-and-forth:fewest-turns.",
+    default=DEFAULT_PATTERN,
     metavar="NAME",
     callback=lambda context, option, value: (
         one_of(pattern_names)(context, option, value.partition(":")[0]) and value
     ),
-    default=DEFAULT_PATTERN,
-    show_default=True,
-    help=f"Pattern of the tool paths: {', '.join(PATTERNS)}, or what another package registers. "
-    "Rows of back-and-forth run back-and-forth:X,Y,Z along a vector, back-and-forth:around:X,Y,Z "
-    "around an axis, or back-and-forth:fewest-turns.",
 )
 
 
@@ -63,14 +60,13 @@ _PATTERN = click.option(
     "The painted surface; its plan is written beside it as OUT.plan.json.",
     required=True,
 )
-@click.option(
+@option(
     "--tool-radius",
-    metavar="M",
-    type=float,
-    help="Of the tool's footprint, m: corridors are made as wide as that where possible.  "
-    "[default: the scene's, or one mean mesh edge]",
+    METRES,
+    "Of the tool's footprint, m: corridors are made as wide as that where possible.  [default: the "
+    "scene's, or one mean mesh edge]",
 )
-@TIME_LIMIT
+@shared("time_limit")
 def paint(
     source: Path, claim: Path, output: Path, tool_radius: float | None, time_limit: Deadline
 ) -> Exit:
@@ -87,8 +83,6 @@ def paint(
     inputs = [source, claim]
     plan_path = check_painted(output, inputs)
     solution = Solution.read(claim)
-    if tool_radius is not None and not 0 < tool_radius < math.inf:
-        raise InputError(None, "--tool-radius", "must be a positive number of meters")
     try:
         with naming(claim):
             subject = read_subject(source, time_limit)
@@ -173,18 +167,10 @@ def write_painted(painted: Painted, output: Path, inputs: Sequence[Path]) -> Non
 @click.argument("source", metavar="SURFACE.json", type=INPUT)
 @click.argument("plan", metavar="PLAN.json", type=PATH)
 @_PATTERN
-@click.option(
-    "--spacing-m",
-    metavar="M",
-    required=True,
-    type=METRES,
-    help="Desired distance between neighboring passes.",
-)
-@click.option(
-    "--tool-radius-m", metavar="M", required=True, type=METRES, help="Of the tool's footprint."
-)
+@option("--spacing-m", METRES, "Desired distance between neighboring passes.", required=True)
+@option("--tool-radius-m", METRES, "Of the tool's footprint.", required=True)
 @output_option("PATHS.json", "The paths.", required=True)
-@TIME_LIMIT
+@shared("time_limit")
 def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
     """Lay a tool path on every segment of a painted surface, without a robot.
 
@@ -221,25 +207,22 @@ def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
 @click.argument("scene", metavar="SCENE.toml", type=INPUT)
 @output_option("FOLDER", "Folder for all files; it is created if it does not exist.", required=True)
 @_PATTERN
-@COVER
-@REQUIRED
-@LEFT_ALONE
-@TOLERANCE
-@click.option(
+@shared("cover", "required", "left_alone", "tolerance")
+@option(
     "--ask",
+    None,
+    "What report.html is to tell besides: tradeoff, explain, place or setups. May be given several "
+    "times.",
     metavar="QUESTION",
     multiple=True,
-    help="What report.html is to tell besides: tradeoff, explain, place or setups. May be given "
-    "several times.",
 )
-@click.option(
+@option(
     "--export-step",
-    type=click.FloatRange(0.001, 0.5),
-    metavar="SECONDS",
-    help="The fixed time step of the files for controllers, from 0.001 to 0.5 s. By default they "
-    "have the samples of the trajectory or via points, and a UR arm's program has 0.008 s.",
+    Real("SECONDS", 0.001, 0.5),
+    "The fixed time step of the files for controllers, from 0.001 to 0.5 s. By default they have "
+    "the samples of the trajectory or via points, and a UR arm's program has 0.008 s.",
 )
-@TIME_LIMIT
+@shared("time_limit")
 @motion_options
 def plan(
     scene: Path, output: Path, tolerance: str | None, export_step: float | None, **wanted: Any
@@ -264,7 +247,7 @@ def plan(
     try:
         with at_work(scene, "planning", late) as report:
             planned = planned_of(
-                scene if tolerance is None else with_tolerance(scene, tolerance),
+                with_tolerance(scene, tolerance),
                 progress=report,
                 **{key: value for key, value in wanted.items() if value is not None},
             )

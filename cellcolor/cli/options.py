@@ -13,6 +13,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.version import __version__
 
 Command = Callable[..., int]
+Decorator = Callable[[Command], Command]
 
 
 class Commands(click.Group):
@@ -36,52 +37,51 @@ def cellcolor(context: click.Context) -> None:
         raise click.UsageError("no command given; see cellcolor --help", context)
 
 
-class _Positive(click.FloatRange):
-    """A positive, finite number of some unit."""
+class Count(click.IntRange):
+    """A whole number in a range."""
 
-    def __init__(self, units: str) -> None:
-        super().__init__(min=0, min_open=True)
-        self.units = units
+    metavar = "N"
+
+
+class Real(click.FloatRange):
+    """A number in a range; click takes NaN for one in any range.
+
+    Args:
+        metavar: what stands for it in a help text.
+        units: what it counts; without them the range is named where it is refused.
+    """
+
+    def __init__(
+        self, metavar: str, low: float, high: float | None = None, units: str | None = None
+    ) -> None:
+        super().__init__(low, high, min_open=units is not None)
+        self.metavar, self.units = metavar, units
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> float:
-        """The number; NaN is refused."""
+        """The number; NaN is refused, and infinity where units are counted."""
         number = float(super().convert(value, param, ctx))
-        if not math.isfinite(number):
+        if self.units is not None and not math.isfinite(number):
             self.fail(f"{value} is not a number of {self.units}.", param, ctx)
-        return number
-
-
-class Price(click.FloatRange):
-    """A price in a range; click takes NaN for one in any range."""
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> float:
-        """The number; NaN is refused."""
-        number = float(super().convert(value, param, ctx))
         if math.isnan(number):
             self.fail(f"{value} is not in the range {self.min}<=x<={self.max}.", param, ctx)
         return number
 
 
-class _Numbers(click.ParamType):  # type: ignore[type-arg]
-    """Numbers with commas between.
+class Numbers(click.ParamType):  # type: ignore[type-arg]
+    """Numbers with commas between; whoever takes them says what they may be.
 
     Args:
         said: what is said where they are something else.
         count: how many; None for any number of them.
-        finite: whether each has to be finite.
         word: what may be said instead of numbers.
     """
 
     name = "numbers"
 
-    def __init__(
-        self, said: str, count: int | None = None, *, finite: bool = False, word: str | None = None
-    ) -> None:
-        self.said, self.count, self.finite, self.word = said, count, finite, word
+    def __init__(self, said: str, count: int | None = None, word: str | None = None) -> None:
+        self.said, self.count, self.word = said, count, word
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         if isinstance(value, tuple) or value == self.word:
@@ -90,20 +90,9 @@ class _Numbers(click.ParamType):  # type: ignore[type-arg]
             numbers = tuple(map(float, value.split(",")))
         except ValueError:
             numbers = ()
-        wrong = not numbers if self.count is None else len(numbers) != self.count
-        if wrong or (self.finite and not all(map(math.isfinite, numbers))):
+        if len(numbers) != (self.count or len(numbers) or 1):
             self.fail(f"{self.said}, is {value!r}.", param, ctx)
         return numbers
-
-
-class _Number(_Numbers):
-    """A single finite number."""
-
-    def __init__(self) -> None:
-        super().__init__("must be a number", 1, finite=True)
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        return super().convert(str(value), param, ctx)[0]
 
 
 class _Input(click.Path):
@@ -141,97 +130,116 @@ def one_of(known: Callable[[], Any]) -> Callable[[click.Context, click.Parameter
 
 PATH = click.Path(path_type=Path)
 INPUT = _Input()
-SECONDS = _Positive("seconds")
-METRES = _Positive("metres")
-POINT = _Numbers("a point is three numbers x,y,z", 3, finite=True)
-POSE = _Numbers("a place is six numbers x,y,z,roll,pitch,yaw", 6)
-SEED = click.option(
-    "--seed",
-    metavar="N",
-    type=click.IntRange(0, 2**31 - 1),
-    default=0,
-    show_default=True,
-    help="Of everything random.",
-)
-TIME_LIMIT = click.option(
-    "--time-limit",
-    metavar="S",
-    type=SECONDS,
-    callback=_deadline,
-    help="Seconds, including reading.  [default: no limit]",
-)
-"""Hands a :class:`~cellcolor.deadline.Deadline` to the command."""
-WORKERS = click.option(
-    "--workers", metavar="N", type=click.IntRange(1, 1000), help="CP-SAT's search workers."
-)
+SECONDS = Real("S", 0, units="seconds")
+METRES = Real("M", 0, units="metres")
+SHARE = Real("S", 0, 1)
 
 
-def output_option(
-    metavar: str, meaning: str, *, name: str = "output", required: bool = False
-) -> Callable[[Command], Command]:
-    """The option ``-o`` for what the command writes; ``name`` is that of its parameter."""
-    return click.option(
-        "-o", "--output", name, metavar=metavar, type=PATH, required=required, help=meaning
-    )
+def option(
+    name: str, kind: Any, meaning: str, *, to: str = "", default: Any = None, **more: Any
+) -> Decorator:
+    """An option with a value.
+
+    Args:
+        kind: its type, which may have a metavar.
+        to: the command's parameter; "" for that of the name.
+        default: told in the help text; without one the parameter is None.
+        more: as of ``click.option``.
+    """
+    names = [name, *filter(None, [to])]
+    about: dict[str, Any] = {
+        "metavar": getattr(kind, "metavar", None),
+        "show_default": default is not None,
+    } | more
+    return click.option(*names, type=kind, default=default, help=meaning, **about)
 
 
-def cover_option(meaning: str, **default: Any) -> Callable[[Command], Command]:
-    """The option ``--cover`` for a share that has to be covered."""
-    return click.option(
-        "--cover", metavar="S", type=click.FloatRange(0, 1), help=meaning, **default
-    )
+def output_option(metavar: str, meaning: str, *, to: str = "output", **more: Any) -> Decorator:
+    """The option ``-o`` for what the command writes."""
+    return click.option("-o", "--output", to, metavar=metavar, type=PATH, help=meaning, **more)
+
+
+def json_option(printed: str) -> Decorator:
+    """The option ``--json``; ``printed`` is its help."""
+    return click.option("--json", "as_json", is_flag=True, help=printed)
 
 
 _PLACE = (
     "a box x,y,z,x,y,z (lowest and highest corner, m), a JSON file with a mask, or a labelled "
     "surface, for what it gives up."
 )
-COVER = cover_option(
-    "Cover only this share of the area, 0 to 1, with the fewest lift-offs that do."
-)
-REQUIRED = click.option(
-    "--required", metavar="PLACE", callback=_place, help=f"What has to be covered: {_PLACE}"
-)
-LEFT_ALONE = click.option(
-    "--left-alone", metavar="PLACE", callback=_place, help=f"What must not be covered: {_PLACE}"
-)
-TOLERANCE = click.option(
-    "--tolerance",
-    metavar="D,A",
-    help="How far a scene's part may stand off, be turned, or both, such as 2mm,0.5deg: colors "
-    "hold at a sample of such displacements.",
-)
-UNIT = click.option(
-    "--unit",
-    type=click.Choice(["m", "mm", "cm", "in"]),
-    help="Unit of the coordinates.  [default: guessed from the size]",
-)
-JOBS: dict[str, Any] = {
-    "metavar": "N",
-    "type": click.IntRange(min=1),
-    "show_default": True,
-    "help": "Number of processes at a time.",
+_SHARED = {
+    "cover": option(
+        "--cover",
+        SHARE,
+        "Cover only this share of the area, 0 to 1, with the fewest lift-offs that do.",
+    ),
+    "required": option(
+        "--required", None, f"What has to be covered: {_PLACE}", metavar="PLACE", callback=_place
+    ),
+    "left_alone": option(
+        "--left-alone",
+        None,
+        f"What must not be covered: {_PLACE}",
+        metavar="PLACE",
+        callback=_place,
+    ),
+    "tolerance": option(
+        "--tolerance",
+        None,
+        "How far a scene's part may stand off, be turned, or both, such as 2mm,0.5deg: colors hold "
+        "at a sample of such displacements.",
+        metavar="D,A",
+    ),
+    "unit": option(
+        "--unit",
+        click.Choice(["m", "mm", "cm", "in"]),
+        "Unit of the coordinates.  [default: guessed from the size]",
+    ),
+    "time_limit": option(
+        "--time-limit",
+        SECONDS,
+        "Seconds, including reading.  [default: no limit]",
+        callback=_deadline,
+    ),
+    "workers": option("--workers", Count(1, 1000), "CP-SAT's search workers."),
+    "seed": option("--seed", Count(0, 2**31 - 1), "Of everything random.", default=0),
+    "jobs": option("--jobs", Count(1), "Number of processes at a time.", default=1),
+    "cluster": option(
+        "--cluster",
+        None,
+        "The scheduler of a Dask cluster that does the work, such as tcp://10.0.0.1:8786, instead "
+        "of processes here.",
+        metavar="ADDRESS",
+    ),
+    "search_space": option(
+        "--search-space",
+        click.Choice(["paper", "surface"]),
+        "paper: no more than one corridor across an edge. surface: several.",
+        default="paper",
+    ),
 }
-CLUSTER = click.option(
-    "--cluster",
-    metavar="ADDRESS",
-    help="The scheduler of a Dask cluster that does the work, such as tcp://10.0.0.1:8786, "
-    "instead of processes here.",
-)
+"""Options by the keywords of the front door's functions; ``time_limit`` is a ``Deadline``."""
 
 
-def json_option(printed: str) -> Callable[[Command], Command]:
-    """The option ``--json``; ``printed`` is its help."""
-    return click.option("--json", "as_json", is_flag=True, help=printed)
+def shared(*names: str) -> Decorator:
+    """Some of the options that several commands have."""
+
+    def add(command: Command) -> Command:
+        for name in reversed(names):
+            command = _SHARED[name](command)
+        return command
+
+    return add
 
 
 def ranges(command: Command) -> Command:
     """An option for each variable of a placement."""
+    kind = Numbers("a range is two numbers LOW,HIGH", 2)
     variables = {"x": "m", "y": "m", "z": "m", "roll": "rad", "pitch": "rad", "yaw": "rad"}
     for name, unit in reversed(variables.items()):
         said = f"Where the part may be put, {name} in {unit}. Values not given stay."
-        kind = _Numbers("a range is two numbers LOW,HIGH", 2)
-        command = click.option(f"--{name}", metavar="LOW,HIGH", type=kind, help=said)(command)
+        command = option(f"--{name}", kind, said, metavar="LOW,HIGH")(command)
     return command
 
 
@@ -262,14 +270,11 @@ def motion_options(command: Command) -> Command:
             flag = click.option("--even-feed", is_flag=True, default=None, help=meaning)
             command = flag(command)
             continue
-        home = key == "home_rad"
-        several = home or key.startswith("joint")
-        numbers = _Numbers("must be numbers N,N,…", finite=True, word="free" if home else None)
-        command = click.option(
-            f"--{key.replace('_', '-')}",
-            key,
-            metavar="N,N,…" if several else "N",
-            type=numbers if several else _Number(),
-            help=meaning,
-        )(command)
+        kind: Any = click.FLOAT
+        metavar = "N"
+        if key == "home_rad" or key.startswith("joint"):
+            word = "free" if key == "home_rad" else None
+            kind, metavar = Numbers("must be numbers N,N,…", word=word), "N,N,…"
+        name = f"--{key.replace('_', '-')}"
+        command = option(name, kind, meaning, to=key, metavar=metavar)(command)
     return command

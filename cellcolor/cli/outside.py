@@ -1,4 +1,4 @@
-"""Graphs for and from other programs: ``export``, ``answer``, ``import`` and ``library``."""
+"""For and from other programs: ``export``, ``answer``, ``import``, ``label`` and ``library``."""
 
 from __future__ import annotations
 
@@ -7,10 +7,21 @@ from typing import TYPE_CHECKING
 
 import click
 
-from cellcolor.cli.ending import Exit
-from cellcolor.cli.options import INPUT, PATH, cellcolor, json_option, output_option
-from cellcolor.cli.terminal import apart_from, print_json, say
+from cellcolor.cli.ending import INTERRUPTS, Exit
+from cellcolor.cli.options import (
+    INPUT,
+    METRES,
+    PATH,
+    cellcolor,
+    json_option,
+    option,
+    output_option,
+    shared,
+)
+from cellcolor.cli.progress import at_work
+from cellcolor.cli.terminal import apart_from, print_json, say, say_lines
 from cellcolor.data.wording import count, listed
+from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, naming
 from cellcolor.files.writing import Output, check_output, kind_of_format, write
 
@@ -27,13 +38,13 @@ _FORMATS = ("pbtxt", "pb", *_ANSWERED)
 @cellcolor.command()
 @click.argument("source", metavar="FILE", type=INPUT)
 @output_option("OUT", "The model's file.", required=True)
-@click.option(
+@option(
     "--format",
-    "kind",
-    type=click.Choice(_FORMATS),
-    help="pbtxt, pb: the complete model for CP-SAT. opb: pseudo-Boolean. wcnf: MaxSAT. "
-    "mps: mixed-integer programs. dzn: data for MiniZinc. "
-    "lp: facts for answer set programs.  [default: from the ending of OUT]",
+    click.Choice(_FORMATS),
+    "pbtxt, pb: the complete model for CP-SAT. opb: pseudo-Boolean. wcnf: MaxSAT. mps: "
+    "mixed-integer programs. dzn: data for MiniZinc. lp: facts for answer set programs.  [default: "
+    "from the ending of OUT]",
+    to="kind",
 )
 def export(source: Path, output: Path, kind: str | None) -> Exit:
     """Write an instance for a solver from outside, in the search space paper.
@@ -64,13 +75,13 @@ def export(source: Path, output: Path, kind: str | None) -> Exit:
 @cellcolor.command()
 @click.argument("source", metavar="FILE", type=INPUT)
 @click.argument("given", metavar="ANSWER", type=PATH)
-@click.option(
+@option(
     "--format",
-    "kind",
-    type=click.Choice(_ANSWERED),
+    click.Choice(_ANSWERED),
+    "The format that the solver was given: opb and wcnf for lines v, mps for a file of names and "
+    "values, dzn for what coloring.mzn prints, lp for what clingo prints.",
+    to="kind",
     required=True,
-    help="The format that the solver was given: opb and wcnf for lines v, mps for a file of names "
-    "and values, dzn for what coloring.mzn prints, lp for what clingo prints.",
 )
 @output_option("SOLUTION.json", "The solution.", required=True)
 def answer(source: Path, given: Path, kind: str, output: Path) -> Exit:
@@ -121,12 +132,13 @@ def _checked(instance: Instance, found: OutsideAnswer, kind: str) -> Solution:
 @cellcolor.command(name="import")
 @click.argument("source", metavar="PROBLEM.txt", type=PATH)
 @output_option("INSTANCE.json", "The instance.", required=True)
-@click.option(
+@option(
     "--correct",
-    "corrections",
+    None,
+    "Correct cells beside an edge if the file has them wrong, -1 for the outside.",
+    to="corrections",
     metavar="EDGE=A,B",
     multiple=True,
-    help="Correct cells beside an edge if the file has them wrong, -1 for the outside.",
 )
 def import_(source: Path, output: Path, corrections: tuple[str, ...]) -> Exit:
     """Make an instance of a graph in the text format of IMCGS, the paper's authors' solver.
@@ -150,7 +162,7 @@ def import_(source: Path, output: Path, corrections: tuple[str, ...]) -> Exit:
 
 
 @cellcolor.command()
-@click.option("--family", metavar="NAME", help="Only the graphs of this family.")
+@option("--family", None, "Only the graphs of this family.", metavar="NAME")
 @click.option(
     "--open", "only_open", is_flag=True, help="Only graphs whose minimum is open in a search space."
 )
@@ -162,10 +174,7 @@ def library(family: str | None, only_open: bool, as_json: bool) -> Exit:
     """
     from dataclasses import asdict
 
-    from rich import box
-    from rich.table import Table
-
-    from cellcolor.cli.tables import console
+    from cellcolor.cli.tables import console, table_of
     from cellcolor.door.shipped import library as shipped
 
     entries = shipped().index.entries
@@ -181,14 +190,9 @@ def library(family: str | None, only_open: bool, as_json: bool) -> Exit:
         for entry in chosen:
             print_json(asdict(entry))
         return Exit.DONE
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in ("name", "family"):
-        table.add_column(name, overflow="fold")
-    for name in ("cells", "darts", "loops", "colors", "holes", "paper", "any division", "verified"):
-        table.add_column(name, justify="right")
-    for entry in chosen:
-        table.add_row(*_row(entry))
-    console().print(table)
+    numbers = ("cells", "darts", "loops", "colors", "holes", "paper", "any division", "verified")
+    columns = {"name": "fold", "family": "fold"} | dict.fromkeys(numbers, "right")
+    console().print(table_of(columns, map(_row, chosen)))
     console().print(
         f"{count(len(chosen), 'graph')}. darts, loops: live ones of the cell that has most; paper, "
         "any division: where the fewest\nsegments lie; verified: the lower bound for any division "
@@ -208,3 +212,43 @@ def _row(entry: LibraryEntry) -> list[str]:
         str(entry.surface),
         lower.kind if lower.verified else "",
     ]
+
+
+@cellcolor.command()
+@click.argument("source", metavar="JOINTS.(npz|json|csv)", type=PATH)
+@output_option("SURFACE.json", "The labelled surface.", required=True)
+@option("--mesh", PATH, "The mesh of a CSV file, in m.", metavar="MESH.(obj|ply|stl)")
+@click.option("--cut", is_flag=True, help="Cut colors that have two solutions of a vertex.")
+@option("--reach", METRES, "The arm's reach; a part far larger is refused.")
+@shared("time_limit")
+def label(
+    source: Path,
+    output: Path,
+    mesh: Path | None,
+    cut: bool,
+    reach: float | None,
+    time_limit: Deadline,
+) -> Exit:
+    """Make a labelled surface of joint solutions at the vertices of a mesh, without a robot.
+
+    Solutions of neighboring vertices that are clearly the nearest to each other belong to one
+    color. What is doubtful is listed.
+    """
+    from cellcolor.data.surface import LabelledSurface
+    from cellcolor.door.labelling import label as labelled
+
+    check_output(output, kind_of_format(LabelledSurface.FORMAT), [source, *filter(None, [mesh])])
+    with at_work(source, "matching", "not labelled: the time limit came first"):
+        found = labelled(
+            source,
+            mesh=mesh,
+            conflicts="cut" if cut else "refuse",
+            reach_m=reach,
+            deadline=time_limit,
+        )
+    INTERRUPTS.check()
+    with apart_from(output):
+        say_lines(found)
+        write([Output.of(output, found.surface)], [source])
+        say(f"wrote {output}")
+    return Exit.DONE

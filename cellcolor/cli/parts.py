@@ -13,11 +13,12 @@ from cellcolor.cli.ending import INTERRUPTS, Exit
 from cellcolor.cli.options import (
     METRES,
     PATH,
-    TIME_LIMIT,
-    UNIT,
+    Real,
     cellcolor,
     json_option,
+    option,
     output_option,
+    shared,
 )
 from cellcolor.cli.progress import at_work
 from cellcolor.cli.terminal import apart_from, print_json, say, say_lines
@@ -50,9 +51,9 @@ class FixedJoint(click.ParamType):  # type: ignore[type-arg]
 
 @cellcolor.command()
 @_PART
-@UNIT
+@shared("unit")
 @output_option("OUT.(html|png|svg)", "A picture with the faulty places marked.")
-@TIME_LIMIT
+@shared("time_limit")
 @_JSON
 def inspect(
     part: Path, unit: str | None, output: Path | None, time_limit: Deadline, as_json: bool
@@ -87,31 +88,17 @@ def inspect(
 
 @cellcolor.command()
 @_PART
-@UNIT
+@shared("unit")
 @output_option("MESH.obj", "The mesh.", required=True)
-@click.option(
-    "--fill-holes",
-    "fill_holes_m",
-    metavar="M",
-    type=METRES,
-    help="Fill holes whose border is at most this long.",
-)
-@click.option(
+@option("--fill-holes", METRES, "Fill holes whose border is at most this long.", to="fill_holes_m")
+@option(
     "--least-component",
-    metavar="SHARE",
-    type=click.FloatRange(0, 1),
+    Real("SHARE", 0, 1),
+    "Drop components smaller than this share of the largest one's area.",
     default=0.01,
-    show_default=True,
-    help="Drop components smaller than this share of the largest one's area.",
 )
-@click.option(
-    "--edge-length",
-    "edge_length_m",
-    metavar="M",
-    type=METRES,
-    help="Remesh to edges of about this length.",
-)
-@TIME_LIMIT
+@option("--edge-length", METRES, "Remesh to edges of about this length.", to="edge_length_m")
+@shared("time_limit")
 @_JSON
 def repair(
     part: Path, output: Path, fill_holes_m: float | None, as_json: bool, **wanted: Any
@@ -146,34 +133,34 @@ def repair(
 @_PART
 @click.argument("arm", metavar="ARM.urdf", type=PATH)
 @output_option("FOLDER", "Folder for the files; it is created if it does not exist.", required=True)
-@click.option(
+@option(
     "--tool",
+    PATH,
+    "The tool, its root fixed to the flange.  [default: a polisher of 100 mm is written]",
     metavar="TOOL.urdf",
-    type=PATH,
-    help="The tool, its root fixed to the flange.  [default: a polisher of 100 mm is written]",
 )
-@click.option("--tip-link", metavar="LINK", default="tip", show_default=True, help="Of the tool.")
-@UNIT
-@click.option(
+@option("--tip-link", None, "Of the tool.", default="tip", metavar="LINK")
+@shared("unit")
+@option(
     "--outside",
-    type=click.Choice(["toward", "away", "flip"]),
-    help="The side to cover: towards the robot, away from it, or the other one than the faces of "
-    "an open part have.  [default: as the faces are wound; of a shell, the outer one]",
+    click.Choice(["toward", "away", "flip"]),
+    "The side to cover: towards the robot, away from it, or the other one than the faces of an "
+    "open part have.  [default: as the faces are wound; of a shell, the outer one]",
 )
-@click.option(
+@option(
     "--cover",
-    type=click.Choice(["largest", "all"]),
-    help="The largest piece between sharp edges, or all.  [default: one side of a shell, all of "
-    "other parts]",
+    click.Choice(["largest", "all"]),
+    "The largest piece between sharp edges, or all.  [default: one side of a shell, all of other "
+    "parts]",
 )
-@click.option(
+@option(
     "--fix",
-    type=FixedJoint(),
+    FixedJoint(),
+    "Where a joint stands still, rad, or m of a rail. May be given several times.  [default: rails "
+    "and joints beside the chain at 0]",
     multiple=True,
-    help="Where a joint stands still, rad, or m of a rail. May be given several times.  [default: "
-    "rails and joints beside the chain at 0]",
 )
-@TIME_LIMIT
+@shared("time_limit")
 def new(
     part: Path, arm: Path, output: Path, fix: tuple[tuple[str, float], ...], **wanted: Any
 ) -> Exit:

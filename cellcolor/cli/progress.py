@@ -17,44 +17,39 @@ from cellcolor.errors import naming
 
 if TYPE_CHECKING:
     from cellcolor.lab.workers import Workers
-    from cellcolor.solvers.interface import OnProgress
 
 _MINUTE = 60.0  # s
 
 
 @contextmanager
-def progress_of(file: Path) -> Iterator[OnProgress]:
-    """A line with the time spent, the best division and the bound."""
+def line_of(file: Path, work: str) -> Iterator[Callable[[str], None]]:
+    """A line with the time spent and what is being done; without a terminal one each minute."""
     name = shown(file.name)
-    with _line(f"{name}: solving") as show:
+    if not sys.stderr.isatty():
+        with _each_minute(f"{name}: {work}") as show:
+            yield lambda text: show(f"{name}: {text}")
+        return
+    from rich.console import Console
+    from rich.progress import Progress as Display
+    from rich.progress import SpinnerColumn, TextColumn, TimeElapsedColumn
 
-        def report(segments: int | None, lower_bound: int) -> None:
-            best = "no division yet" if segments is None else f"best {segments}"
-            show(f"{name}: {best}, at least {lower_bound}")
-
-        yield report
-
-
-@contextmanager
-def scheme_progress_of(file: Path) -> Iterator[Callable[[int], None]]:
-    """A line with the time spent and the schemes found."""
-    name = shown(file.name)
-    with _line(f"{name}: looking for schemes") as show:
-        yield lambda found: show(f"{name}: {count(found, 'scheme')} so far")
+    columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    with Display(*columns, console=Console(stderr=True), transient=True) as display:
+        task = display.add_task(f"{name}: {work}", total=None)
+        yield lambda text: display.update(task, description=f"{name}: {text}")
 
 
 @contextmanager
 def stages_of(file: Path, work: str) -> Iterator[Callable[[str], None]]:
-    """A line with the time spent and what is being done.
+    """The same, told what is done next.
 
     Libraries that catch everything can swallow a signal; it is raised at the next stage.
     """
-    name = shown(file.name)
-    with _line(f"{name}: {work}") as show:
+    with line_of(file, work) as show:
 
         def report(stage: str) -> None:
             INTERRUPTS.check()
-            show(f"{name}: {stage}")
+            show(stage)
 
         yield report
 
@@ -76,23 +71,6 @@ def at_work(file: Path, work: str, late: str) -> Iterator[Callable[[str], None]]
             yield report
     except OutOfTime as error:
         raise OutOfTime(f"{file}: {late}") from error
-
-
-@contextmanager
-def _line(text: str) -> Iterator[Callable[[str], None]]:
-    """A line that can be replaced; without a terminal a line each minute that work takes."""
-    if not sys.stderr.isatty():
-        with _each_minute(text) as show:
-            yield show
-        return
-    from rich.console import Console
-    from rich.progress import Progress as Display
-    from rich.progress import SpinnerColumn, TextColumn, TimeElapsedColumn
-
-    columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
-    with Display(*columns, console=Console(stderr=True), transient=True) as display:
-        task = display.add_task(text, total=None)
-        yield lambda text: display.update(task, description=text)
 
 
 @contextmanager

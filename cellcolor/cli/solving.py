@@ -4,27 +4,26 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from itertools import chain
 from pathlib import Path
 from types import FrameType
-from typing import IO, Any
+from typing import Any
 
 import click
 
 from cellcolor.checker.claimed_numbers import contradictions
 from cellcolor.cli.ending import INTERRUPTS, Exit, worst
 from cellcolor.cli.inputs import read_subject
-from cellcolor.cli.progress import progress_of, scheme_progress_of
+from cellcolor.cli.progress import line_of
 from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solution
 from cellcolor.cli.terminal import apart_from, complain, print_json, unheard
 from cellcolor.data.instance import Instance
 from cellcolor.data.schemes import scheme_line
 from cellcolor.data.solution import Division, Solution
-from cellcolor.deadline import NEVER, Deadline, OutOfTime
+from cellcolor.data.wording import count
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.door.drawing import kind_of_plot
 from cellcolor.door.result import Result
 from cellcolor.errors import CellcolorError, InputError, system_errors
@@ -87,18 +86,12 @@ class Request:
     @property
     def inputs(self) -> list[Path]:
         """Files that are read."""
-        start = self.search["start"]
-        return [*self.files, *([] if start is None else [start])]
+        return [*self.files, *filter(None, [self.search["start"]])]
 
     @property
     def of_a_part(self) -> bool:
         """Whether something is left out on purpose."""
         return self.search["cover"] is not None or self.search["left_alone"] is not None
-
-    def options(self, deadline: Deadline = NEVER) -> Options:
-        """The options for the solver."""
-        asked = {name: self.search[name] for name in ("search_space", "strands", "workers", "seed")}
-        return Options(**asked, deadline=deadline)
 
 
 def solve_files(request: Request) -> Exit:
@@ -170,12 +163,13 @@ def _check_able(request: Request) -> None:
 
     What every solver can do is not asked about: bad input has to import no solver.
     """
-    solver, start = request.search["solver"], request.search["start"] is not None
-    if request.every or start or request.search["search_space"] != "paper":
+    space, start = request.search["search_space"], request.search["start"] is not None
+    if request.every or start or space != "paper":
         from cellcolor.solvers.checked import check_able
 
+        options = Options(space, request.search["strands"])
         try:
-            check_able(solver, request.options(), start=start, schemes=request.every)
+            check_able(request.search["solver"], options, start=start, schemes=request.every)
         except InputError as error:
             raise click.UsageError(str(error)) from error
 
@@ -223,81 +217,61 @@ def _solve(file: Path, target: Path | None, request: Request, deadline: Deadline
 
     if request.every:
         check_able_to_list(request.search["solver"], instance)
-    with progress_of(file) as report, end_the_search():
-        result = solve(subject, time_limit=deadline, progress=report, **request.search)
-    beside = []
-    if target is not None and not is_stream(target) and request.of_a_part:
-        beside = [_solved(result, target)]
+    with line_of(file, "solving") as show, end_the_search():
+
+        def progress(segments: int | None, bound: int) -> None:
+            best = "no division yet" if segments is None else f"best {segments}"
+            show(f"{best}, at least {bound}")
+
+        result = solve(subject, time_limit=deadline, progress=progress, **request.search)
     if request.picture is not None:
         from cellcolor.door.drawing import draw_search
 
         draw_search(result, request.picture)
-    if not request.every:
-        if target is not None:
-            _make_folder(target)
-            write([*beside, Output.of(target, result.solution)], request.inputs)
-        return result
-    with _spool(target) as spool:
-        solution = _with_schemes(file, result, request, deadline, spool)
-        if target is not None and spool is not None:
-            spool.seek(0)
-            head = json.dumps(solution.to_document(), ensure_ascii=False) + "\n"
-            output = Output(target, _SOLUTION, chain([head.encode()], spool))
-            write([*beside, output], request.inputs)
-    return replace(result, solution=solution)
+    schemes: list[str] = []
+    if request.every:
+        result, schemes = _with_schemes(file, result, request, deadline)
+    if target is not None:
+        _write(target, result, schemes, request)
+    return result
 
 
-def _solved(result: Result, target: Path) -> Output:
-    """What had to be covered, beside its solution: its surface, or its graph."""
-    beside = target.with_name(f"{target.name.removesuffix(target.suffix)}.covered.json")
-    return Output.of(beside, result.instance if result.surface is None else result.surface)
-
-
-def _make_folder(target: Path) -> None:
+def _write(target: Path, result: Result, schemes: list[str], request: Request) -> None:
+    """A solution, schemes after it, and beside it what had to be covered: surface or graph."""
+    outputs = []
+    if request.of_a_part and not is_stream(target):
+        beside = target.with_name(f"{target.name.removesuffix(target.suffix)}.covered.json")
+        covered = result.instance if result.surface is None else result.surface
+        outputs = [Output.of(beside, covered)]
+    if request.every:
+        lines = [json.dumps(result.solution.to_document(), ensure_ascii=False), *schemes]
+        outputs.append(Output(target, _SOLUTION, (f"{line}\n".encode() for line in lines)))
+    else:
+        outputs.append(Output.of(target, result.solution))
     with system_errors(target, "cannot be written"):
         target.parent.mkdir(parents=True, exist_ok=True)
-
-
-@contextmanager
-def _spool(target: Path | None) -> Iterator[IO[bytes] | None]:
-    """A file without a name, where schemes wait for the solution that precedes them.
-
-    It is beside the target if it can, where there should be room for it.
-    """
-    if target is None:
-        yield None
-        return
-    _make_folder(target)
-    folder = None if is_stream(target) else target.resolve().parent
-    with system_errors(target, "cannot be written"):
-        spool = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115
-    with spool:
-        yield spool
+    write(outputs, request.inputs)
 
 
 def _with_schemes(
-    file: Path, result: Result, request: Request, deadline: Deadline, spool: IO[bytes] | None
-) -> Solution:
-    """The solution with all optimal schemes counted, each written as soon as it is found."""
+    file: Path, result: Result, request: Request, deadline: Deadline
+) -> tuple[Result, list[str]]:
+    """The result with all optimal schemes counted, and their lines."""
     from cellcolor.questions.listing_schemes import with_schemes
 
-    solution = result.solution
     if INTERRUPTS.seen:
-        return replace(solution, schemes=0, complete=False)
-    # Where each scheme ends: after a signal the last may be there in half, or not be counted.
-    ends = [0]
-    with scheme_progress_of(file) as count, end_the_search():
+        return replace(result, solution=replace(result.solution, schemes=0, complete=False)), []
+    lines: list[str] = []
+    with line_of(file, "looking for schemes") as show, end_the_search():
 
         def take(division: Division) -> None:
-            if spool is not None:
-                spool.write(scheme_line(division).encode() + b"\n")
-            ends.append(0 if spool is None else spool.tell())
-            if count is not None:
-                count(len(ends) - 1)
+            lines.append(scheme_line(division))
+            show(f"{count(len(lines), 'scheme')} so far")
 
-        solver, most = request.search["solver"], request.limit or _SCHEMES
-        options = request.options(deadline)
-        solution = with_schemes(result.instance, solution, solver, options, most, take)
-    if spool is not None:
-        spool.truncate(ends[solution.schemes or 0])
-    return solution
+        most = request.limit or _SCHEMES
+        given = {name: request.search[name] for name in ("workers", "seed")}
+        options = Options(deadline=deadline, **given)
+        solver = request.search["solver"]
+        solution = with_schemes(result.instance, result.solution, solver, options, most, take)
+    # After a signal the last line may not be counted.
+    return replace(result, solution=solution), lines[: solution.schemes]

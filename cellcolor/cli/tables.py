@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from rich import box
@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from cellcolor.cli.terminal import shown
+from cellcolor.cli.terminal import say, shown
 from cellcolor.data.instance import Instance
 from cellcolor.data.shares import (
     BASES,
@@ -36,6 +36,19 @@ def console() -> Console:
     )
 
 
+def table_of(columns: Mapping[str, str], rows: Iterable[Sequence[str]]) -> Table:
+    """A table, its columns by their titles: ``left``, ``right``, or ``fold`` with line breaks."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for title, side in columns.items():
+        if side == "fold":
+            table.add_column(title, overflow="fold")
+        else:
+            table.add_column(title, justify="right" if side == "right" else "left")
+    for row in rows:
+        table.add_row(*row)
+    return table
+
+
 def print_solution(instance: Instance, solution: Solution) -> None:
     """One solution: its segments, then what is known about their number.
 
@@ -50,50 +63,49 @@ def print_solution(instance: Instance, solution: Solution) -> None:
         if not shares.certain:
             out.print("ranges: the cut through a divided cell may run anywhere between its ends")
             out.print()
-    summary = Table(box=None, show_header=False, pad_edge=False)
-    for name, value in [*_summary(solution), *_because(instance, solution)]:
-        summary.add_row(Text(name, style="bold"), value)
-    out.print(summary)
-    out.print()
+    say(solution.in_words(instance))
+    if solution.schemes is not None:
+        say(f"{count(solution.schemes, 'scheme')} ({_extent(solution)})")
+    for note in solution.notes:
+        say(note)
+    space = solution.search_space
+    strands = f" with {solution.strands} strands" if space == "surface" else ""
+    say(f"{solution.seconds:.2f} s with {solution.solver}, search space {space}{strands}")
+    say()
 
 
 def print_overview(solved: Sequence[tuple[Path, Instance, Solution]]) -> None:
     """A line for each file."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("file", overflow="fold")
-    for name in ("cells", "segments", "lift-offs", "at least"):
-        table.add_column(name, justify="right")
-    table.add_column("status")
-    table.add_column("seconds", justify="right")
-    for file, instance, solution in solved:
-        table.add_row(
+    numbers = ("cells", "segments", "lift-offs", "at least", "seconds")
+    columns = {"file": "fold"} | dict.fromkeys(numbers, "right") | {"status": "left"}
+    rows = [
+        (
             shown(file),
             str(len(instance.cells)),
-            _number(solution.segments),
-            _number(solution.lift_offs),
-            str(solution.lower_bound),
-            _status(solution),
-            f"{solution.seconds:.2f}",
+            *("none found" if n is None else str(n) for n in (found.segments, found.lift_offs)),
+            str(found.lower_bound),
+            f"{found.seconds:.2f}",
+            found.status + ", for any division" * found.proved_for_surface,
         )
-    console().print(table)
+        for file, instance, found in solved
+    ]
+    console().print(table_of(columns, rows))
 
 
 def _segments(instance: Instance, solution: Solution, shares: Shares) -> Table:
     """Color, cells and share of each segment, and what is in none."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("segment", justify="right")
-    table.add_column("color")
-    table.add_column("cells", overflow="fold")
-    table.add_column(BASES[shares.of], justify="right")
-    for row in segment_rows(instance, solution, shares)[:_SEGMENTS_SHOWN]:
-        table.add_row(str(row.segment), shown(row.color), row.cells, row.percent)
+    rows = [
+        (str(row.segment), shown(row.color), row.cells, row.percent)
+        for row in segment_rows(instance, solution, shares)[:_SEGMENTS_SHOWN]
+    ]
     if (more := len(shares.segments) - _SEGMENTS_SHOWN) > 0:
-        table.add_row("…", count(more, "more segment"), "", "")
+        rows.append(("…", count(more, "more segment"), "", ""))
     if shares.of == "surface":
-        table.add_row("", UNREACHABLE, "", percent(shares.unreachable, shares.unreachable))
+        rows.append(("", UNREACHABLE, "", percent(shares.unreachable, shares.unreachable)))
         if shares.given_up:
-            table.add_row("", GIVEN_UP, "", percent(shares.given_up, shares.given_up))
-    return table
+            rows.append(("", GIVEN_UP, "", percent(shares.given_up, shares.given_up)))
+    columns = {"segment": "right", "color": "left", "cells": "fold", BASES[shares.of]: "right"}
+    return table_of(columns, rows)
 
 
 def nothing_to_cover(instance: Instance) -> str:
@@ -106,24 +118,6 @@ def nothing_to_cover(instance: Instance) -> str:
     )
 
 
-def _summary(solution: Solution) -> list[tuple[str, str]]:
-    lines = [
-        ("segments", _number(solution.segments)),
-        ("lift-offs", _number(solution.lift_offs)),
-        ("status", _status(solution)),
-        (
-            "at least",
-            f"{solution.lower_bound} in this search space, "
-            f"{solution.surface_lower_bound} in any division of the surface",
-        ),
-        ("time", f"{solution.seconds:.2f} s with {solution.solver}"),
-    ]
-    lines += [("note", note) for note in solution.notes]
-    if solution.schemes is not None:
-        lines.insert(3, ("schemes", f"{solution.schemes} ({_extent(solution)})"))
-    return lines
-
-
 def _extent(solution: Solution) -> str:
     """Whether the schemes that were found are all there are."""
     if solution.complete:
@@ -131,21 +125,3 @@ def _extent(solution: Solution) -> str:
     if solution.status != "optimal":
         return "not searched for: the minimum is not proved"
     return "the search was stopped, there may be more: see --limit and --time-limit"
-
-
-def _because(instance: Instance, solution: Solution) -> list[tuple[str, str]]:
-    """Why there cannot be fewer segments, or by what that is proved."""
-    told = (("because", solution.why_not_fewer(instance)), ("proved by", solution.proved_by))
-    return [(name, text) for name, text in told if text is not None]
-
-
-def _status(solution: Solution) -> str:
-    space: str = solution.search_space
-    if space == "surface":
-        space += f", {solution.strands} strands"
-    proof = "; proved for any division" if solution.proved_for_surface else ""
-    return f"{solution.status} ({space}{proof})"
-
-
-def _number(value: int | None) -> str:
-    return "none found" if value is None else str(value)

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import json
+from typing import TYPE_CHECKING
 
 from cellcolor.cli.terminal import say
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
-from cellcolor.data.verdicts import PlanVerdict, SolutionVerdict
+from cellcolor.data.verdicts import SolutionVerdict
 from cellcolor.data.wording import count, segments_and_lift_offs
 from cellcolor.door.shipped import library
+
+if TYPE_CHECKING:
+    from cellcolor.oracle import Verdict
 
 _FAULTS = 3  # of each kind
 _VERTICES = 10
 _SOLVERS = {"cp-sat": "CP-SAT", "cp-sat-model": "CP-SAT"}  # what has proved their bounds
 
 
-def say_plan(name: str, verdict: PlanVerdict) -> None:
+def say_plan(name: str, verdict: Verdict) -> None:
     """What is said of a plan with a name."""
     say(f"{name}: {'valid' if verdict.valid else 'not valid'}")
     places = {f"vertex_colors[{found.vertex}]": found.place for found in verdict.violations}
@@ -27,28 +31,8 @@ def say_plan(name: str, verdict: PlanVerdict) -> None:
         say(f"  {problem}{where}")
     if len(verdict.problems) > _VERTICES:
         say(f"  {len(verdict.problems) - _VERTICES} more")
-    if verdict.segments is None:
-        return
-    say(f"  {segments_and_lift_offs(verdict.segments)}")
-    if verdict.lower_bound is None:
-        return
-    lower, upper = verdict.lower_bound, verdict.upper_bound
-    least = f"exactly {lower}" if lower == upper else f"between {lower} and {upper}"
-    say(f"  fewest segments on this surface: {least}")
-    if verdict.kept_lower_bound is not None:
-        say(f"  kept, not verified: at least {verdict.kept_lower_bound}")
-    if verdict.optimal:
-        say("  optimal" + ("" if verdict.why is None else f", because {verdict.why}"))
-    elif verdict.beatable_by:
-        say(f"  {count(verdict.beatable_by, 'fewer is', 'fewer are')} enough")
-    else:
-        say("  not known to be optimal, not known to be beatable")
-    if (found := verdict.improvement) is not None:
-        (one, other), (near, far) = found.joined, found.places
-        say(f"  segments {one} and {other} (at vertices {near} and {far}) can be joined")
-        if found.segments_on_mesh > found.segments:
-            fewest = count(found.segments_on_mesh, "segment")
-            say(f"  this mesh is coarse: on it {fewest} are the fewest found")
+    if verdict.segments is not None:
+        say(f"  {verdict}")
 
 
 def say_solution(name: str, verdict: SolutionVerdict) -> None:

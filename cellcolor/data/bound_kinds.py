@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from pydantic import NonNegativeInt
 
@@ -19,6 +18,7 @@ from cellcolor.data.bounds import (
     marks_of,
 )
 from cellcolor.data.instance import Instance
+from cellcolor.data.value import Value
 from cellcolor.data.wording import count, listed
 
 
@@ -63,7 +63,7 @@ _Cells = tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class CertifiedCrossing:
+class CertifiedCrossing(Value):
     """Two segments that would have to cross.
 
     Attributes:
@@ -72,15 +72,13 @@ class CertifiedCrossing:
         other: the same for the second segment.
     """
 
-    __pydantic_config__ = Certificate.__pydantic_config__
-
     colors: tuple[int, int]
     one: tuple[_Cells, _Cells]
     other: tuple[_Cells, _Cells]
 
 
 @dataclass(frozen=True, slots=True)
-class CertifiedPart:
+class CertifiedPart(Value):
     """Cells that so many segments at least are needed to touch, and why fewer cannot.
 
     Attributes:
@@ -88,8 +86,6 @@ class CertifiedPart:
         cells: what they are needed to touch.
         conflicts: what two segments cannot do.
     """
-
-    __pydantic_config__ = Certificate.__pydantic_config__
 
     value: NonNegativeInt
     cells: _Cells
@@ -116,13 +112,6 @@ class CertifiedParts(Certificate):
             return _conflict_shown(conflicts, instance)
         cells = tuple(cell for part in self.parts for cell in part.cells)
         return CertifiedCells(cells).shown(value, instance)
-
-    def to_document(self) -> dict[str, Any]:
-        """The JSON object; ``left_out`` only where there is some."""
-        document = Certificate.to_document(self)
-        if not self.left_out:
-            del document["left_out"]
-        return document
 
 
 def _conflict_shown(conflicts: Sequence[CertifiedCrossing], instance: Instance) -> Shown:

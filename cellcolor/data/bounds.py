@@ -10,15 +10,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
-from functools import cache
-from typing import Any, Literal, Self
+from typing import Any, Literal
 
-from pydantic import ConfigDict, NonNegativeInt, TypeAdapter
+from pydantic import NonNegativeInt
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.value import Value
 from cellcolor.data.wording import count, listed
-from cellcolor.files.documents import validate
 from cellcolor.files.validation import json_content, settle
 
 Extent = Literal["surface", "strands"]
@@ -51,17 +49,6 @@ class Bound(Value):
     def __str__(self) -> str:
         extent = "any division of the surface" if self.holds_for == "surface" else "these strands"
         return f"at least {count(self.value, 'segment')} for {extent}, by {self.kind}"
-
-    def to_document(self) -> dict[str, Any]:
-        """The JSON object."""
-        document: dict[str, Any] = {
-            "kind": self.kind,
-            "value": self.value,
-            "holds_for": self.holds_for,
-        }
-        if self.certificate is not None:
-            document["certificate"] = self.certificate
-        return document
 
 
 def greatest(bounds: Sequence[Bound], extent: Extent) -> int:
@@ -118,26 +105,10 @@ class Shown:
     notes: tuple[str, ...]
 
 
-class Certificate(ABC):
+class Certificate(Value, ABC):
     """What proves a bound. A subclass is a frozen dataclass with the members of the JSON object."""
 
     __slots__ = ()
-    __pydantic_config__ = ConfigDict(extra="forbid", strict=True)
-
-    @classmethod
-    def from_document(cls, document: dict[str, Any]) -> Self:
-        """A certificate from the JSON object.
-
-        Raises:
-            InputError: it is none.
-        """
-        found: Self = validate(cls._adapter(), document)
-        return found
-
-    def to_document(self) -> dict[str, Any]:
-        """The JSON object."""
-        document: dict[str, Any] = self._adapter().dump_python(self)
-        return document
 
     @abstractmethod
     def shown(self, value: int, instance: Instance) -> Shown:
@@ -150,11 +121,6 @@ class Certificate(ABC):
     def witness(self, value: int) -> tuple[int, ...]:  # noqa: ARG002
         """As many cells as the bound says, no two of which can share a segment; or none."""
         return ()
-
-    @classmethod
-    @cache
-    def _adapter(cls) -> TypeAdapter[Any]:
-        return TypeAdapter(cls)
 
 
 @dataclass(frozen=True, slots=True)

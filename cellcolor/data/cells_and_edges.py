@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import overload
@@ -11,7 +11,7 @@ from pydantic import NonNegativeFloat
 
 from cellcolor.data.value import Value
 from cellcolor.data.wording import count, listed
-from cellcolor.errors import InputError
+from cellcolor.errors import refuse
 from cellcolor.files.validation import settle
 
 OUTSIDE = -1
@@ -93,52 +93,49 @@ def check_graph(cells: Sequence[Cell], edges: Sequence[Edge], color_count: int) 
     Raises:
         InputError: anything that ``docs/formats.md`` forbids, with field and element.
     """
-    _check_cells(cells, color_count)
-    _check_edges(cells, edges, color_count)
-    _check_darts(cells, edges)
+    refuse(_faults_of_cells(cells, color_count))
+    refuse(_faults_of_edges(cells, edges, color_count))
+    refuse(_faults_of_darts(cells, edges))
 
 
-def _check_cells(cells: Sequence[Cell], color_count: int) -> None:
+_Faults = Iterator[tuple[str, str]]
+"""Fields, and what is wrong with them."""
+
+
+def _faults_of_cells(cells: Sequence[Cell], color_count: int) -> _Faults:
     for position, cell in enumerate(cells):
         where = f"cells[{position}]"
         if cell.id != position:
-            raise InputError(
-                None, f"{where}.id", f"cell ids are 0, 1, 2, … in this order; is {cell.id}"
-            )
+            yield f"{where}.id", f"cell ids are 0, 1, 2, … in this order; is {cell.id}"
         if not cell.colors:
-            raise InputError(None, f"{where}.colors", f"cell {cell.id} has no color")
-        _check_colors(cell.colors, color_count, f"{where}.colors")
+            yield f"{where}.colors", f"cell {cell.id} has no color"
+        yield from _faults_of_colors(cell.colors, color_count, f"{where}.colors")
         for number, loop in enumerate(cell.loops):
             if not loop:
-                raise InputError(None, f"{where}.loops[{number}]", "a loop without darts")
+                yield f"{where}.loops[{number}]", "a loop without darts"
 
 
-def _check_edges(cells: Sequence[Cell], edges: Sequence[Edge], color_count: int) -> None:
+def _faults_of_edges(cells: Sequence[Cell], edges: Sequence[Edge], color_count: int) -> _Faults:
     seen: set[int] = set()
     for position, edge in enumerate(edges):
         where = f"edges[{position}]"
         if edge.id < 1:
-            raise InputError(None, f"{where}.id", f"must be positive, is {edge.id}")
+            yield f"{where}.id", f"must be positive, is {edge.id}"
         if edge.id in seen:
-            raise InputError(None, f"{where}.id", f"edge {edge.id} appears twice")
+            yield f"{where}.id", f"edge {edge.id} appears twice"
         seen.add(edge.id)
         for side, cell in (("left", edge.left), ("right", edge.right)):
             if not OUTSIDE <= cell < len(cells):
-                raise InputError(None, f"{where}.{side}", f"no cell {cell} in this instance")
+                yield f"{where}.{side}", f"no cell {cell} in this instance"
         if edge.left == OUTSIDE and edge.right == OUTSIDE:
-            raise InputError(None, where, f"edge {edge.id} has -1 on both sides")
-        if edge.colors is not None:
-            _check_colors(edge.colors, color_count, f"{where}.colors")
-            surplus = set(edge.colors) - shared_colors(cells, edge)
-            if surplus:
-                raise InputError(
-                    None,
-                    f"{where}.colors",
-                    f"color {min(surplus)} is not shared by cells {edge.left} and {edge.right}",
-                )
+            yield where, f"edge {edge.id} has -1 on both sides"
+        yield from _faults_of_colors(edge.colors or (), color_count, f"{where}.colors")
+        for color in sorted(set(edge.colors or ()) - shared_colors(cells, edge)):
+            sides = f"cells {edge.left} and {edge.right}"
+            yield f"{where}.colors", f"color {color} is not shared by {sides}"
 
 
-def _check_darts(cells: Sequence[Cell], edges: Sequence[Edge]) -> None:
+def _faults_of_darts(cells: Sequence[Cell], edges: Sequence[Edge]) -> _Faults:
     owner = {edge.id: edge.left for edge in edges}
     owner |= {-edge.id: edge.right for edge in edges}
     seen: set[int] = set()
@@ -147,50 +144,37 @@ def _check_darts(cells: Sequence[Cell], edges: Sequence[Edge]) -> None:
             for place, dart in enumerate(loop):
                 where = f"cells[{cell.id}].loops[{number}][{place}]"
                 if dart not in owner:
-                    raise InputError(None, where, f"dart {dart} belongs to no edge")
+                    yield where, f"dart {dart} belongs to no edge"
                 if owner[dart] != cell.id:
-                    side = "left" if dart > 0 else "right"
-                    raise InputError(
-                        None,
-                        where,
-                        f"dart {dart} is not cell {cell.id}'s: edge {abs(dart)} has "
-                        f"{owner[dart]} on its {side}, so this loop does not close",
-                    )
+                    has = f"{owner[dart]} on its {'left' if dart > 0 else 'right'}"
+                    message = f"dart {dart} is not cell {cell.id}'s: edge {abs(dart)} has {has}"
+                    yield where, f"{message}, so this loop does not close"
                 if dart in seen:
-                    raise InputError(None, where, f"dart {dart} appears twice")
+                    yield where, f"dart {dart} appears twice"
                 seen.add(dart)
     for position, edge in enumerate(edges):
         for dart in (edge.id, -edge.id):
             if owner[dart] != OUTSIDE and dart not in seen:
-                raise InputError(
-                    None,
-                    f"edges[{position}]",
-                    f"dart {dart} is missing from the loops of cell {owner[dart]}, "
-                    "so they do not close",
-                )
+                message = f"dart {dart} is missing from the loops of cell {owner[dart]}"
+                yield f"edges[{position}]", f"{message}, so they do not close"
 
 
-def _check_colors(colors: Sequence[int], count: int, where: str) -> None:
-    """Refuse what is no set of colors; they are in order by now, so no place is named."""
+def _faults_of_colors(colors: Sequence[int], count: int, where: str) -> _Faults:
+    """What is no set of colors; they are in order by now, so no place is named."""
     for color in colors:
         if not 0 <= color < count:
-            raise InputError(None, where, f"unknown color {color}")
+            yield where, f"unknown color {color}"
     for color, following in pairwise(colors):
         if color == following:
-            raise InputError(None, where, f"color {color} appears twice")
+            yield where, f"color {color} appears twice"
 
 
-def check_color_names(colors: Sequence[str]) -> None:
-    """Reject color names that are not distinct: plans and pictures refer to colors by name.
-
-    Raises:
-        InputError: a name appears twice.
-    """
+def faults_of_color_names(colors: Sequence[str]) -> _Faults:
+    """Color names that are not distinct: plans and pictures refer to colors by name."""
     first: dict[str, int] = {}
     for number, name in enumerate(colors):
         if first.setdefault(name, number) != number:
-            message = f"{name!r} is the name of color {first[name]} already"
-            raise InputError(None, f"colors[{number}]", message)
+            yield f"colors[{number}]", f"{name!r} is the name of color {first[name]} already"
 
 
 DartName = int | tuple[int, int]

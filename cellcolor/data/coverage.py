@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
-from typing import Annotated, Any
+from dataclasses import dataclass
+from typing import Annotated
 
 from annotated_types import Ge, Le
 from pydantic import NonNegativeFloat
@@ -50,7 +50,3 @@ class Coverage(Value):
             f"{100 * self.covered:.1f} % of {self.area_m2:.4g} m² can be covered, "
             f"{100 * self.unreachable:.1f} % is unreachable{given_up}"
         )
-
-    def to_document(self) -> dict[str, Any]:
-        """The JSON object."""
-        return asdict(self)

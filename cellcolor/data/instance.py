@@ -6,8 +6,7 @@ import hashlib
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from os import PathLike
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from pydantic import NonNegativeInt
 
@@ -15,19 +14,16 @@ from cellcolor.data.cells_and_edges import (
     OUTSIDE,
     Cell,
     Edge,
-    check_color_names,
     check_graph,
+    faults_of_color_names,
     shared_colors,
 )
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.value import Document, Value, given_members
+from cellcolor.data.value import Document, Drawn, Value, members_of
 from cellcolor.data.wording import count
-from cellcolor.errors import InputError
+from cellcolor.errors import refuse
 from cellcolor.files.documents import dump_lines, sha256_of
 from cellcolor.files.validation import json_content, settle
-
-if TYPE_CHECKING:
-    import cellcolor
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +58,7 @@ class KnownResults(Value):
 
 
 @dataclass(frozen=True, repr=False)
-class Instance(Document):
+class Instance(Document, Drawn):
     """A validated topological graph, all that is needed to solve.
 
     Attributes:
@@ -81,6 +77,8 @@ class Instance(Document):
 
     FORMAT = "cellcolor/instance"
     ADDED = (("coverage", "surface.sha256"),)
+    LINES = ("cells", "edges")
+    LAST = ("known",)
 
     name: str
     colors: tuple[str, ...]
@@ -97,14 +95,13 @@ class Instance(Document):
         settle(self)
         if self.meta is not None:
             object.__setattr__(self, "meta", json_content(self.meta, "meta"))
-        check_color_names(self.colors)
+        refuse(faults_of_color_names(self.colors))
         check_graph(self.cells, self.edges, len(self.colors))
-        if self.surface is not None:
-            for vertex, cell in enumerate(self.surface.vertex_cell):
-                if not OUTSIDE <= cell < len(self.cells):
-                    raise InputError(
-                        None, f"surface.vertex_cell[{vertex}]", f"no cell {cell} in this instance"
-                    )
+        refuse(
+            (f"surface.vertex_cell[{vertex}]", f"no cell {cell} in this instance")
+            for vertex, cell in enumerate(() if self.surface is None else self.surface.vertex_cell)
+            if not OUTSIDE <= cell < len(self.cells)
+        )
 
     @property
     def size(self) -> str:
@@ -202,33 +199,6 @@ class Instance(Document):
         )
         return graph, kept
 
-    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
-        """Draw it; see ``cellcolor.show`` for the options in ``view``."""
-        import cellcolor  # the whole package's face, which only somebody who looks at it needs
-
-        return cellcolor.show(self, path, **view)
-
-    def to_json(self) -> str:
-        """The file's text, as ``build`` writes it."""
-        document = {"format": self.FORMAT, "version": 2} | self._body()
-        return dump_lines(document, frozenset({"cells", "edges"}))
-
-    def _body(self) -> dict[str, Any]:
-        """The JSON object without its format and version."""
-        document: dict[str, Any] = {"name": self.name, "colors": self.colors}
-        document["cells"] = [given_members(cell) for cell in self.cells]
-        document["edges"] = [given_members(edge) for edge in self.edges]
-        if self.meta is not None:
-            document["meta"] = self.meta
-        if self.surface is not None:
-            document["surface"] = given_members(self.surface)
-        if self.coverage is not None:
-            document["coverage"] = self.coverage.to_document()
-        if self.known is not None:
-            results = given_members(self.known)
-            document["known"] = {space: given_members(known) for space, known in results.items()}
-        return document
-
     @cached_property
     def sha256(self) -> str:
         """Fingerprint of what a solver reads (docs/formats.md): the graph, no names, no sizes.
@@ -257,7 +227,7 @@ class Instance(Document):
     @property
     def sha256_of_version_1(self) -> str:
         """Fingerprint of this instance in a solution of version 1: that of the whole file."""
-        return self._of_version_1 or _fingerprint_of_version_1(self._body())
+        return self._of_version_1 or _fingerprint_of_version_1(members_of(self))
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Instance:

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
-from cellcolor.data.value import numbered_rows, rows_of_three, truths
+from cellcolor.data.value import Rows, RowsOfThree, RowsWithGaps, Truths, Value, check_lengths
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
+from cellcolor.files.validation import settle
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class JointPlan:
+class JointPlan(Value):
     """A configuration for each vertex of a scene's surface.
 
     It has its own type because a bare array of joint angles could also be a path.
@@ -29,15 +29,14 @@ class JointPlan:
         InputError: it is not such an array, or a row has some numbers and some NaN.
     """
 
-    joints: NDArray[np.float64]
+    joints: RowsWithGaps
 
     def __post_init__(self) -> None:
-        joints = numbered_rows(self.joints, "joints")
-        torn = np.isnan(joints).any(axis=1) & ~np.isnan(joints).all(axis=1)
+        settle(self)
+        torn = np.isnan(self.joints).any(axis=1) & ~np.isnan(self.joints).all(axis=1)
         if torn.any():
             message = "has NaN and numbers; a vertex without contact has NaN throughout"
             raise InputError(None, f"joints[{int(np.argmax(torn))}]", message)
-        object.__setattr__(self, "joints", joints)
 
     def __repr__(self) -> str:
         touched = int((~np.isnan(self.joints)).any(axis=1).sum())
@@ -46,7 +45,7 @@ class JointPlan:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ContactPath:
+class ContactPath(Value):
     """A tool path with its joint angles, as samples in order.
 
     A run of consecutive samples in contact is a **stroke**; the tool lifts off between strokes.
@@ -61,26 +60,13 @@ class ContactPath:
         InputError: these are not such arrays, or have different lengths.
     """
 
-    joints: NDArray[np.float64]
-    points: NDArray[np.float64] | None = None
-    contact: NDArray[np.bool_] | None = None
+    joints: Rows
+    points: RowsOfThree | None = None
+    contact: Truths | None = None
 
     def __post_init__(self) -> None:
-        joints = numbered_rows(self.joints, "joints")
-        bad = np.argwhere(np.isnan(joints))
-        if len(bad):
-            place = "".join(f"[{number}]" for number in bad[0])
-            raise InputError(None, f"joints{place}", "is not a finite number")
-        members: dict[str, Any] = {"joints": joints}
-        if self.points is not None:
-            members["points"] = rows_of_three(self.points, "points")
-        if self.contact is not None:
-            members["contact"] = truths(self.contact, "contact")
-        for name, content in members.items():
-            if len(content) != len(joints):
-                message = f"has {len(content)} entries for {len(joints)} rows of joints"
-                raise InputError(None, name, message)
-            object.__setattr__(self, name, content)
+        settle(self)
+        check_lengths(self, ("points", "contact"), len(self.joints), "rows of joints")
 
     @classmethod
     def of(cls, trajectory: Trajectory | TrajectoryTable) -> ContactPath:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Annotated
 
 from pydantic import Field, NonNegativeInt
@@ -14,7 +14,6 @@ from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.data.value import Document, Value
 from cellcolor.data.wording import count, span
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines
 from cellcolor.files.validation import settle
 
 _WHERE: dict[SearchSpace, str] = {
@@ -208,6 +207,7 @@ class LibraryIndex(Document):
     """
 
     FORMAT = "cellcolor/library"
+    LINES = ("entries",)
 
     entries: tuple[LibraryEntry, ...]
 
@@ -228,9 +228,3 @@ class LibraryIndex(Document):
             if entry.name == name:
                 return entry
         raise KeyError(name)
-
-    def to_json(self) -> str:
-        """The file's text, an entry a line."""
-        entries = [asdict(entry) for entry in self.entries]
-        document = {"format": self.FORMAT, "version": 1, "entries": entries}
-        return dump_lines(document, frozenset({"entries"}))

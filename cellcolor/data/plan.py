@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 
 from cellcolor.data.value import Document
@@ -33,9 +32,3 @@ class Plan(Document):
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {self}>"
-
-    def to_json(self) -> str:
-        """The file's text."""
-        return json.dumps(
-            {"format": self.FORMAT, "version": 1, "vertex_colors": list(self.vertex_colors)}
-        )

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from os import PathLike
 from typing import ClassVar
 
-from cellcolor.data.solution import Division, division_document
-from cellcolor.data.value import Value, adapter_of
+from cellcolor.data.solution import Division
+from cellcolor.data.value import Value
 from cellcolor.errors import InputError
-from cellcolor.files.documents import is_json, parse_json, read_text, validate
+from cellcolor.files.documents import is_json, parse_json, read_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ def read_schemes(path: str | PathLike[str]) -> Iterator[Division]:
             body = parse_json(line)
             if body.pop("format", None) != SchemeLine.FORMAT:
                 raise InputError(None, "format", f"must be {SchemeLine.FORMAT!r}")
-            yield validate(adapter_of(SchemeLine), body).cells
+            yield SchemeLine.from_document(body).cells
         except InputError as error:
             field = f"line {number}" + (f", {error.field}" if error.field else "")
             raise InputError(str(path), field, error.message) from error
@@ -45,5 +45,5 @@ def read_schemes(path: str | PathLike[str]) -> Iterator[Division]:
 
 def scheme_line(division: Division) -> str:
     """One line of JSON Lines for one optimal scheme."""
-    document = {"format": SchemeLine.FORMAT, "cells": division_document(division)}
+    document = {"format": SchemeLine.FORMAT} | SchemeLine(division).to_document()
     return json.dumps(document, ensure_ascii=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import combinations
 from os import PathLike
 from typing import Annotated, Any, Literal
@@ -16,13 +16,10 @@ from cellcolor.data.bounds import Bound, Extent
 from cellcolor.data.cells_and_edges import DartName, twin
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance
-from cellcolor.data.value import Document, Value, adapter_of
+from cellcolor.data.value import Document, Value, adapter_of, read_one_of
 from cellcolor.data.wording import count, listed
-from cellcolor.errors import InputError, naming
+from cellcolor.errors import InputError
 from cellcolor.files.documents import (
-    dump_lines,
-    parse_first_object,
-    read_text,
     take_body,
     validate,
 )
@@ -156,6 +153,7 @@ class Solution(Document):
 
     FORMAT = "cellcolor/solution"
     ADDED = (("bounds", "coverage", "notes", "instance.of"), ("model",))
+    LINES = ("bounds", "cells")
 
     instance: InstanceReference
     search_space: SearchSpace
@@ -181,19 +179,10 @@ class Solution(Document):
 
     def __post_init__(self) -> None:
         settle(self)
-        missing = [
-            name
-            for name, value in (
-                ("segments", self.segments),
-                ("lift_offs", self.lift_offs),
-                ("cells", self.cells),
-            )
-            if value is None
-        ]
+        found = ("segments", "lift_offs", "cells")
+        missing = [name for name in found if getattr(self, name) is None]
         if self.status == "unknown" and len(missing) < 3:
-            raise InputError(
-                None, "status", "an unknown result has null segments, lift_offs and cells"
-            )
+            raise InputError(None, "status", f"an unknown result has null {listed(found)}")
         if self.status != "unknown" and missing:
             raise InputError(None, missing[0], f"must not be null in a result {self.status!r}")
 
@@ -277,50 +266,7 @@ class Solution(Document):
         return f"<{type(self).__name__} of {self.instance.name!r}: {self}>"
 
     def to_document(self) -> dict[str, Any]:
-        """The JSON object."""
-        document: dict[str, Any] = {
-            "format": self.FORMAT,
-            "version": 3,
-            "instance": {"name": self.instance.name, "sha256": self.instance.sha256},
-            "search_space": self.search_space,
-            "strands": self.strands,
-            "solver": self.solver,
-            "status": self.status,
-            "segments": self.segments,
-            "lift_offs": self.lift_offs,
-            "lower_bound": self.lower_bound,
-            "surface_lower_bound": self.surface_lower_bound,
-            "proved_for_surface": self.proved_for_surface,
-        }
-        if self.instance.of != "graph":
-            document["instance"]["of"] = self.instance.of
-        if self.bounds is not None:
-            document["bounds"] = [bound.to_document() for bound in self.bounds]
-        if self.model is not None:
-            document["model"] = asdict(self.model)
-        if self.coverage is not None:
-            document["coverage"] = self.coverage.to_document()
-        if self.notes:
-            document["notes"] = list(self.notes)
-        document |= {
-            "seams": [
-                {"id": s.id, "cell": s.cell, "from": s.from_, "to": s.to, "strands": s.strands}
-                for s in self.seams
-            ],
-            "cells": None if self.cells is None else division_document(self.cells),
-            "seconds": round(self.seconds, 4),
-        }
-        if self.schemes is not None:
-            document["schemes"] = self.schemes
-            document["complete"] = self.complete
-        if self.cutting_paths_lower_bound is not None:
-            document["cutting_paths"] = self.cutting_paths
-            document["cutting_paths_lower_bound"] = self.cutting_paths_lower_bound
-        return document
-
-    def to_json(self) -> str:
-        """The file's text."""
-        return dump_lines(self.to_document(), frozenset({"bounds", "cells"}))
+        return Document.to_document(self) | {"seconds": round(self.seconds, 4)}
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Solution:
@@ -337,9 +283,8 @@ class Solution(Document):
         Raises:
             InputError: the file cannot be read or holds something that the format forbids.
         """
-        text = read_text(path)
-        with naming(path):
-            return cls.from_document(parse_first_object(text))
+        found: Solution = read_one_of(path, (cls,))
+        return found
 
 
 def witness_in_words(instance: Instance, cells: tuple[int, ...]) -> str | None:
@@ -358,20 +303,6 @@ def witness_in_words(instance: Instance, cells: tuple[int, ...]) -> str | None:
         )
     shared = "share a color" if disjoint else "can be in one segment"
     return f"no two of the cells {listed(cells)} {shared}"
-
-
-def division_document(division: Division) -> list[dict[str, Any]]:
-    """The ``cells`` member of a solution or scheme."""
-    return [
-        {
-            "id": cell.id,
-            "subcells": [
-                {"color": sub.color, "darts": list(sub.darts), "segment": sub.segment}
-                for sub in cell.subcells
-            ],
-        }
-        for cell in division
-    ]
 
 
 def number_segments(

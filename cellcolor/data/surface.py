@@ -2,29 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ConfigDict, TypeAdapter
 
 from cellcolor.arrays import Mask
-from cellcolor.data.cells_and_edges import check_color_names
+from cellcolor.data.cells_and_edges import faults_of_color_names
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.value import Document, RowsOfThree, Triples, Value, WithArrays, adapter_of
+from cellcolor.data.value import (
+    Document,
+    Drawn,
+    RowsOfThree,
+    Triples,
+    Value,
+    WithArrays,
+    check_lengths,
+)
 from cellcolor.data.wording import count, listed
-from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, sha256_of, take_body, validate
-from cellcolor.files.validation import json_content, plain, settle, validate_python
+from cellcolor.errors import InputError, refuse
+from cellcolor.files.documents import sha256_of, take_body
+from cellcolor.files.validation import json_content, settle
 from cellcolor.mesh.oriented import directed_edges
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-
-if TYPE_CHECKING:
-    import cellcolor
 
 _FARTHEST = 1e9  # m
 
@@ -57,7 +60,7 @@ class Crack(Value):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LabelledSurface(WithArrays, Document):
+class LabelledSurface(WithArrays, Document, Drawn):
     """What a front end produces: where the surface is, and which colors reach each point.
 
     Lists and arrays are taken for every member, and put in order; the arrays are copies that
@@ -81,6 +84,8 @@ class LabelledSurface(WithArrays, Document):
 
     FORMAT = "cellcolor/labelled-surface"
     ADDED = (("given_up",),)
+    ALWAYS = ("cracks",)
+    LAST = ("meta",)
 
     name: str
     colors: tuple[str, ...]
@@ -94,34 +99,20 @@ class LabelledSurface(WithArrays, Document):
     def __post_init__(self) -> None:
         settle(self)
         for name, content in (
-            ("vertices", _rows(self.vertices, "vertices", float)),
-            ("faces", _rows(self.faces, "faces", int)),
             ("vertex_colors", tuple([tuple(sorted(colors)) for colors in self.vertex_colors])),
             ("given_up", tuple(sorted(self.given_up))),
             ("meta", json_content(self.meta, "meta")),
         ):
             object.__setattr__(self, name, content)
-        if self.vertices.ndim != 2 or self.vertices.shape[1] != 3:
-            raise InputError(None, "vertices", "each vertex needs three coordinates")
-        if self.faces.ndim != 2 or self.faces.shape[1] != 3:
-            raise InputError(None, "faces", "each face needs three vertices")
-        bad = np.argwhere(~np.isfinite(self.vertices))
-        if len(bad):
-            raise InputError(None, f"vertices[{bad[0][0]}][{bad[0][1]}]", "is not a finite number")
         bad = np.argwhere(np.abs(self.vertices) > _FARTHEST)
         if len(bad):
             message = f"is beyond {_FARTHEST:g} m: areas could not be computed"
             raise InputError(None, f"vertices[{bad[0][0]}][{bad[0][1]}]", message)
-        if len(self.vertex_colors) != len(self.vertices):
-            raise InputError(
-                None,
-                "vertex_colors",
-                f"has {len(self.vertex_colors)} entries for {len(self.vertices)} vertices",
-            )
-        self._check_colors()
+        check_lengths(self, ("vertex_colors",), len(self.vertices), "vertices")
+        refuse(self._faults_of_colors())
         _ = self.left_of  # refuses what is not an oriented 2-manifold
-        self._check_cracks()
-        self._check_given_up()
+        refuse(self._faults_of_cracks())
+        refuse(self._faults_of_given_up())
 
     def __hash__(self) -> int:  # type: ignore[override]
         return hash(self.sha256)
@@ -142,47 +133,43 @@ class LabelledSurface(WithArrays, Document):
         parts += [f"{len(self.given_up)} given up"] if self.given_up else []
         return f"{self.name}: {', '.join(parts)}"
 
-    def _check_colors(self) -> None:
-        check_color_names(self.colors)
+    def _faults_of_colors(self) -> Iterator[tuple[str, str]]:
+        yield from faults_of_color_names(self.colors)
         for vertex, colors in enumerate(self.vertex_colors):
             for color in colors:
                 if not 0 <= color < len(self.colors):
-                    raise InputError(None, f"vertex_colors[{vertex}]", f"unknown color {color}")
+                    yield f"vertex_colors[{vertex}]", f"unknown color {color}"
             if len(set(colors)) != len(colors):
-                raise InputError(None, f"vertex_colors[{vertex}]", "a color appears twice")
+                yield f"vertex_colors[{vertex}]", "a color appears twice"
 
-    def _check_cracks(self) -> None:
+    def _faults_of_cracks(self) -> Iterator[tuple[str, str]]:
         seen: set[tuple[int, int]] = set()
         for number, crack in enumerate(self.cracks):
-            where = f"cracks[{number}]"
-            pair = (min(crack.i, crack.j), max(crack.i, crack.j))
+            where, pair = f"cracks[{number}]", (crack.i, crack.j)
             if pair not in self.left_of and pair[::-1] not in self.left_of:
-                raise InputError(None, where, f"{crack.i}-{crack.j} is not an edge of the mesh")
+                yield where, f"{crack.i}-{crack.j} is not an edge of the mesh"
             if pair in seen:
-                raise InputError(None, where, f"edge {crack.i}-{crack.j} has a crack already")
+                yield where, f"edge {crack.i}-{crack.j} has a crack already"
             seen.add(pair)
             if not crack.colors or len(set(crack.colors)) != len(crack.colors):
-                raise InputError(None, where, "needs at least one color, each once")
+                yield where, "needs at least one color, each once"
             shared = set(self.vertex_colors[crack.i]) & set(self.vertex_colors[crack.j])
             for color in crack.colors:
                 if not 0 <= color < len(self.colors):
-                    raise InputError(None, where, f"unknown color {color}")
+                    yield where, f"unknown color {color}"
                 if color not in shared:
-                    raise InputError(
-                        None,
-                        where,
-                        f"color {color} is not shared by vertices {crack.i} and {crack.j}",
-                    )
+                    ends = f"vertices {crack.i} and {crack.j}"
+                    yield where, f"color {color} is not shared by {ends}"
 
-    def _check_given_up(self) -> None:
+    def _faults_of_given_up(self) -> Iterator[tuple[str, str]]:
         for place, vertex in enumerate(self.given_up):
             where = f"given_up[{place}]"
             if not 0 <= vertex < len(self.vertices):
-                raise InputError(None, where, f"there is no vertex {vertex}")
+                yield where, f"there is no vertex {vertex}"
             if self.vertex_colors[vertex]:
-                raise InputError(None, where, f"vertex {vertex} has colors")
+                yield where, f"vertex {vertex} has colors"
             if vertex in self.given_up[place - 1 : place]:
-                raise InputError(None, where, f"vertex {vertex} appears twice")
+                yield where, f"vertex {vertex} appears twice"
 
     @cached_property
     def left_of(self) -> dict[tuple[int, int], int]:
@@ -283,85 +270,25 @@ class LabelledSurface(WithArrays, Document):
             | ({"given_up": self.given_up} if self.given_up else {})
         )
 
-    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
-        """Draw it; see ``cellcolor.show`` for the options in ``view``."""
-        import cellcolor  # the whole package's face, which only somebody who looks at it needs
-
-        return cellcolor.show(self, path, **view)
-
-    def to_json(self) -> str:
-        """The file's text."""
-        document: dict[str, Any] = {
-            "format": self.FORMAT,
-            "version": 2,
-            "name": self.name,
-            "colors": self.colors,
-            "vertices": self.vertices.tolist(),
-            "faces": self.faces.tolist(),
-            "vertex_colors": self.vertex_colors,
-            "cracks": [[c.i, c.j, c.colors] for c in self.cracks],
-        }
-        if self.given_up:
-            document["given_up"] = self.given_up
-        if self.meta:
-            document["meta"] = self.meta
-        return dump_lines(document, frozenset())
+    def to_document(self) -> dict[str, Any]:
+        return super().to_document() | {"cracks": [[c.i, c.j, list(c.colors)] for c in self.cracks]}
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> LabelledSurface:
-        body = take_body(document, cls.FORMAT, cls.ADDED)
-        raw = validate(adapter_of(_SurfaceFile), body)
-        return cls(
-            raw.name,
-            raw.colors,
-            _array(raw.vertices, "vertices", float),
-            _array(raw.faces, "faces", int),
-            tuple(raw.vertex_colors),
-            tuple([Crack(i, j, colors) for i, j, colors in raw.cracks]),
-            raw.meta,
-            raw.given_up,
-        )
+        raw = _SurfaceFile.from_document(take_body(document, cls.FORMAT, cls.ADDED))
+        members = {member.name: getattr(raw, member.name) for member in fields(raw)}
+        return cls(**members | {"cracks": tuple([Crack(*crack) for crack in raw.cracks])})
 
 
 @dataclass(frozen=True, slots=True)
 class _SurfaceFile(Value):
-    """The file's members, before they become arrays."""
+    """The file's members; a crack is a list of its ends and its colors."""
 
     name: str
     colors: tuple[str, ...]
-    vertices: list[tuple[float, float, float]]
-    faces: list[tuple[int, int, int]]
-    vertex_colors: list[tuple[int, ...]]
-    cracks: list[tuple[int, int, tuple[int, ...]]] = field(default_factory=list)
-    meta: dict[str, Any] = field(default_factory=dict)
+    vertices: RowsOfThree
+    faces: Triples
+    vertex_colors: tuple[tuple[int, ...], ...]
+    cracks: tuple[tuple[int, int, tuple[int, ...]], ...] = ()
     given_up: tuple[int, ...] = ()
-
-
-_ROWS: dict[type, TypeAdapter[Any]] = {
-    float: TypeAdapter(list[tuple[float, float, float]], config=ConfigDict(strict=True)),
-    int: TypeAdapter(list[tuple[int, int, int]], config=ConfigDict(strict=True)),
-}
-_KINDS = {float: ("iuf", "numbers"), int: ("iu", "integers")}
-
-
-def _rows(content: Any, member: str, kind: type) -> NDArray[Any]:
-    """An array of int64 or float64 of its own, unchangeable."""
-    if isinstance(content, np.ndarray):
-        kinds, text = _KINDS[kind]
-        if content.dtype.kind not in kinds:
-            raise InputError(None, member, f"must be {text}, is an array of {content.dtype}")
-        array = _array(content, member, kind)
-    else:
-        rows = plain(content)
-        rows = validate_python(_ROWS[kind], list(rows) if isinstance(rows, tuple) else rows, member)
-        array = _array(rows, member, kind)
-    array.setflags(write=False)
-    return array
-
-
-def _array(rows: Any, member: str, kind: type) -> NDArray[Any]:
-    try:
-        array = np.array(rows, dtype=np.float64 if kind is float else np.int64)
-    except OverflowError as error:
-        raise InputError(None, member, "a number is too large") from error
-    return array if array.size else array.reshape(-1, 3)
+    meta: dict[str, Any] = field(default_factory=dict)

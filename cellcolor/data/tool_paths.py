@@ -13,13 +13,10 @@ from cellcolor.data.value import (
     RowsOfThree,
     Value,
     WithArrays,
-    adapter_of,
-    integers,
-    rows_of_three,
+    check_lengths,
 )
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, take_body, validate
 from cellcolor.files.validation import settle
 
 
@@ -48,17 +45,10 @@ class ToolPath(WithArrays, Value):
 
     def __post_init__(self) -> None:
         settle(self)
-        object.__setattr__(self, "points", rows_of_three(self.points, "points"))
-        object.__setattr__(self, "normals", rows_of_three(self.normals, "normals"))
-        object.__setattr__(self, "faces", integers(self.faces, "faces"))
         if len(self.points) < 2:
             raise InputError(None, "points", "a path needs at least two points")
-        if len(self.normals) != len(self.points):
-            message = f"has {len(self.normals)} entries for {len(self.points)} points"
-            raise InputError(None, "normals", message)
-        if len(self.faces) != len(self.points) - 1:
-            message = f"has {len(self.faces)} entries for {len(self.points) - 1} steps"
-            raise InputError(None, "faces", message)
+        check_lengths(self, ("normals",), len(self.points), "points")
+        check_lengths(self, ("faces",), len(self.points) - 1, "steps")
 
     @property
     def length(self) -> float:
@@ -84,6 +74,7 @@ class ToolPaths(WithArrays, Document):
     """
 
     FORMAT = "cellcolor/tool-paths"
+    LINES = ("paths",)
 
     name: str
     pattern: str
@@ -91,6 +82,16 @@ class ToolPaths(WithArrays, Document):
     tool_radius_m: float
     paths: tuple[ToolPath, ...]
     surface_sha256: str
+
+    @classmethod
+    def from_document(cls, document: dict[str, Any]) -> ToolPaths:
+        paths = document.get("paths")
+        for number, path in enumerate(paths if isinstance(paths, list) else ()):
+            try:
+                ToolPath.from_document(path)
+            except InputError as error:
+                raise InputError(None, f"paths[{number}].{error.field}", error.message) from error
+        return super().from_document(document)
 
     @property
     def length(self) -> float:
@@ -100,69 +101,3 @@ class ToolPaths(WithArrays, Document):
     def __str__(self) -> str:
         paths = count(len(self.paths), "tool path")
         return f"{self.name}: {paths}, {self.pattern}, {self.length:.2f} m"
-
-    def to_json(self) -> str:
-        """The file's text."""
-        paths = [
-            {
-                "segment": path.segment,
-                "color": path.color,
-                "points": path.points.tolist(),
-                "normals": path.normals.tolist(),
-                "faces": path.faces.tolist(),
-            }
-            for path in self.paths
-        ]
-        document: dict[str, Any] = {
-            "format": self.FORMAT,
-            "version": 1,
-            "name": self.name,
-            "pattern": self.pattern,
-            "spacing_m": self.spacing_m,
-            "tool_radius_m": self.tool_radius_m,
-            "surface_sha256": self.surface_sha256,
-            "paths": paths,
-        }
-        return dump_lines(document, frozenset({"paths"}))
-
-    @classmethod
-    def from_document(cls, document: dict[str, Any]) -> ToolPaths:
-        raw = validate(adapter_of(_ToolPathsFile), take_body(document, cls.FORMAT))
-        paths = []
-        for number, path in enumerate(raw.paths):
-            try:
-                members = (path.segment, path.color, path.points, path.normals, path.faces)
-                paths.append(ToolPath(*members))
-            except InputError as error:
-                raise InputError(None, f"paths[{number}].{error.field}", error.message) from error
-        return cls(
-            raw.name,
-            raw.pattern,
-            raw.spacing_m,
-            raw.tool_radius_m,
-            tuple(paths),
-            raw.surface_sha256,
-        )
-
-
-@dataclass(frozen=True, slots=True)
-class _PathInFile(Value):
-    """A path's members, before they become arrays."""
-
-    segment: int
-    color: int
-    points: list[tuple[float, float, float]]
-    normals: list[tuple[float, float, float]]
-    faces: list[int]
-
-
-@dataclass(frozen=True, slots=True)
-class _ToolPathsFile(Value):
-    """The file's members, before they become arrays."""
-
-    name: str
-    pattern: str
-    spacing_m: float
-    tool_radius_m: float
-    paths: list[_PathInFile]
-    surface_sha256: str

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -16,19 +16,13 @@ from cellcolor.data.value import (
     Truths,
     Value,
     WithArrays,
-    integers,
-    numbers,
-    rows_of,
-    rows_of_three,
-    truths,
+    check_lengths,
 )
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines
 from cellcolor.files.validation import json_content, settle
 
-_ARRAYS = ("times", "joints", "points", "normals", "contact", "segment")
-_LISTS = ("extra_lift_offs", "left_out", "repeated")
+_ARRAYS = ("joints", "points", "normals", "contact", "segment")
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +107,8 @@ class Trajectory(WithArrays, Document):
     """
 
     FORMAT = "cellcolor/trajectory"
+    LINES = ("extra_lift_offs", "left_out", "repeated")
+    ALWAYS = ("unplanned", *LINES)
 
     name: str
     joint_names: tuple[str, ...]
@@ -130,20 +126,14 @@ class Trajectory(WithArrays, Document):
 
     def __post_init__(self) -> None:
         settle(self)
-        for name, content in (
-            ("times", numbers(self.times, "times")),
-            ("joints", rows_of(self.joints, len(self.joint_names), "joints")),
-            ("points", rows_of_three(self.points, "points")),
-            ("normals", rows_of_three(self.normals, "normals")),
-            ("contact", truths(self.contact, "contact")),
-            ("segment", integers(self.segment, "segment")),
-            ("meta", json_content(self.meta, "meta")),
-        ):
-            object.__setattr__(self, name, content)
-        for name in _ARRAYS[1:]:
-            if len(getattr(self, name)) != len(self.times):
-                message = f"has {len(getattr(self, name))} entries for {len(self.times)} times"
-                raise InputError(None, name, message)
+        object.__setattr__(self, "meta", json_content(self.meta, "meta"))
+        if not self.joints.size:
+            empty = self.joints.reshape(0, len(self.joint_names))
+            object.__setattr__(self, "joints", empty)
+        elif self.joints.shape[1] != len(self.joint_names):
+            message = f"each entry needs {len(self.joint_names)} numbers"
+            raise InputError(None, "joints", message)
+        check_lengths(self, _ARRAYS, len(self.times), "times")
 
     @property
     def strokes(self) -> tuple[tuple[int, int], ...]:
@@ -168,19 +158,3 @@ class Trajectory(WithArrays, Document):
         lift_offs = count(self.lift_offs, "lift-off")
         samples = count(len(self.times), "sample")
         return f"{self.name}: {strokes}, {lift_offs}, {self.seconds:.1f} s, {samples}"
-
-    def to_json(self) -> str:
-        """The file's text."""
-        document: dict[str, Any] = {
-            "format": self.FORMAT,
-            "version": 1,
-            "name": self.name,
-            "joint_names": self.joint_names,
-        }
-        document |= {name: getattr(self, name).tolist() for name in _ARRAYS}
-        document["unplanned"] = self.unplanned
-        for name in _LISTS:
-            document[name] = [asdict(entry) for entry in getattr(self, name)]
-        if self.meta:
-            document["meta"] = self.meta
-        return dump_lines(document, frozenset(_LISTS))

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from cellcolor.data.value import Count, Document, Value, adapter_of
+from cellcolor.data.value import Count, Document, Value, adapter_of, every_member_of
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, take_body, validate
+from cellcolor.files.documents import take_body, validate
 
 FaultKind = Literal[
     "time",
@@ -192,6 +192,7 @@ class TrajectoryVerdict(Document):
     """
 
     FORMAT = "cellcolor/trajectory-verdict"
+    LINES = ("faults",)
 
     name: str
     samples: Count
@@ -228,19 +229,12 @@ class TrajectoryVerdict(Document):
         said = "valid" if self.valid else f"not valid, {faults}"
         return f"{self.name}: {said}, {count(self.lift_offs, 'lift-off')}"
 
-    def to_json(self) -> str:
-        """The file's text."""
-        document: dict[str, Any] = {"format": self.FORMAT, "version": 1, "valid": self.valid}
-        return dump_lines(document | asdict(self), frozenset({"faults"}))
+    def to_document(self) -> dict[str, Any]:
+        head = {"format": self.FORMAT, "version": 1, "valid": self.valid}
+        return head | every_member_of(self)
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> TrajectoryVerdict:
-        """A verdict from a parsed JSON object.
-
-        Raises:
-            InputError: a member is missing, unknown or of the wrong type, or ``valid`` says
-                something else than the faults.
-        """
         raw = validate(adapter_of(_VerdictFile), take_body(document, cls.FORMAT))
         verdict = cls(**{member.name: getattr(raw, member.name) for member in fields(cls)})
         if raw.valid_ != verdict.valid:

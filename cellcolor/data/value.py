@@ -2,22 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Callable, Collection
+from dataclasses import MISSING, dataclass, fields, is_dataclass
 from functools import cache
 from os import PathLike
-from typing import Annotated, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, GetCoreSchemaHandler, NonNegativeInt, TypeAdapter
 from pydantic_core import CoreSchema
 
-from cellcolor.errors import InputError
-from cellcolor.files.documents import read_as, take_body, validate
-from cellcolor.files.validation import LeftToNumpy, settle
+from cellcolor.errors import InputError, naming
+from cellcolor.files.documents import (
+    dump_lines,
+    parse_first_object,
+    read_as,
+    read_text,
+    take_body,
+    validate,
+)
+from cellcolor.files.validation import LeftToNumpy, settle, validate_python
+
+if TYPE_CHECKING:
+    import cellcolor
 
 Count = NonNegativeInt
+
+adapter_of: Callable[[Any], TypeAdapter[Any]] = cache(TypeAdapter)
+"""What reads the JSON object of a dataclass."""
 
 
 class Value:
@@ -38,6 +51,20 @@ class Value:
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self}>"
 
+    @classmethod
+    def from_document(cls, document: dict[str, Any]) -> Self:
+        """The value of a parsed JSON object.
+
+        Raises:
+            InputError: anything that the format forbids, with the member.
+        """
+        found: Self = validate(adapter_of(cls), document)
+        return found
+
+    def to_document(self) -> dict[str, Any]:
+        """The JSON object, without members that are left at their defaults."""
+        return members_of(self)
+
 
 class Document(Value):
     """A value that is read from files of one format."""
@@ -47,17 +74,26 @@ class Document(Value):
     ADDED: ClassVar[tuple[tuple[str, ...], ...]] = ()
     """The members that version 2 added, those that version 3 added, and so on; those of members as
     ``member.name``."""
+    ALWAYS: ClassVar[tuple[str, ...]] = ()
+    """Members that are written even if they are left at their defaults."""
+    LINES: ClassVar[tuple[str, ...]] = ()
+    """Members whose elements are written a line each."""
+    LAST: ClassVar[tuple[str, ...]] = ()
+    """Members that are written after all others."""
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Self:
-        """The value of a parsed JSON object.
+        return super().from_document(take_body(document, cls.FORMAT, cls.ADDED))
 
-        Raises:
-            InputError: anything that the format forbids, with the member.
-        """
-        body = take_body(document, cls.FORMAT, cls.ADDED)
-        found: Self = validate(adapter_of(cls), body)
-        return found
+    def to_document(self) -> dict[str, Any]:
+        head = {"format": self.FORMAT, "version": 1 + len(self.ADDED)}
+        members = members_of(self, self.ALWAYS)
+        last = {name: members.pop(name) for name in self.LAST if name in members}
+        return head | members | last
+
+    def to_json(self) -> str:
+        """The file's text."""
+        return dump_lines(self.to_document(), self.LINES)
 
     @classmethod
     def read(cls, path: str | PathLike[str]) -> Self:
@@ -69,6 +105,23 @@ class Document(Value):
         return read_as(path, cls.from_document)
 
 
+def read_one_of(path: str | PathLike[str], kinds: Collection[type[Document]]) -> Any:
+    """The value in a file of one of several formats; of a file of JSON Lines that in the first.
+
+    Raises:
+        InputError: the file cannot be read, has another format, or holds something that its format
+            forbids.
+    """
+    text = read_text(path)
+    with naming(path):
+        document = parse_first_object(text)
+        for kind in kinds:
+            if document.get("format") == kind.FORMAT:
+                return kind.from_document(document)
+        known = " or ".join(repr(kind.FORMAT) for kind in kinds)
+        raise InputError(None, "format", f"must be {known}, is {document.get('format')!r}")
+
+
 class AboutAFile(Document):
     """What is said about a file, whose name is in ``file``."""
 
@@ -76,19 +129,55 @@ class AboutAFile(Document):
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object, the file's name first."""
-        value: Any = self
-        members = asdict(value)
-        return {"file": members.pop("file"), "format": self.FORMAT, "version": 1} | members
+        head = {"file": None, "format": self.FORMAT, "version": 1}
+        return head | every_member_of(self)
 
 
-adapter_of: Callable[[Any], TypeAdapter[Any]] = cache(TypeAdapter)
-"""What reads the JSON object of a dataclass."""
+def members_of(value: Any, always: Collection[str] = ()) -> dict[str, Any]:
+    """The members of a dataclass as JSON has them, without those left at their defaults."""
+    found = {}
+    for member in fields(value):
+        content, default = getattr(value, member.name), member.default
+        if member.default_factory is not MISSING:
+            default = member.default_factory()
+        if member.name in always or default is MISSING or content != default:
+            found[member.name.rstrip("_")] = _plain(content)
+    return found
 
 
-def given_members(value: Any) -> dict[str, Any]:
-    """The members of a dataclass that are not None, by name, in their order."""
-    members = {field.name: getattr(value, field.name) for field in fields(value)}
-    return {name: content for name, content in members.items() if content is not None}
+def every_member_of(value: Any) -> dict[str, Any]:
+    """The members of a dataclass as JSON has them, and null for what is None."""
+    return {member.name: _plain(getattr(value, member.name), True) for member in fields(value)}
+
+
+def _plain(content: Any, whole: bool = False) -> Any:
+    if isinstance(content, np.ndarray):
+        return content.tolist()
+    if isinstance(content, tuple):
+        return [part if type(part) is int else _plain(part, whole) for part in content]
+    if is_dataclass(content):
+        return every_member_of(content) if whole else members_of(content)
+    return content
+
+
+class Drawn:
+    """What can be drawn."""
+
+    __slots__ = ()
+
+    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
+        """Draw it: ``cellcolor.show``.
+
+        Args:
+            path: a file .html, .png or .svg; None draws without writing, for notebooks.
+            view: what else to look at, see ``cellcolor.show``.
+
+        Raises:
+            InputError: the extra ``viz`` is not installed, or the file cannot be written.
+        """
+        import cellcolor  # the whole package's face, which only somebody who looks at it needs
+
+        return cellcolor.show(self, path, **view)  # type: ignore[arg-type]
 
 
 class WithArrays:
@@ -117,111 +206,93 @@ def _same(one: Any, other: Any) -> bool:
     return bool(one == other)
 
 
+_KINDS: dict[type, tuple[str, str]] = {
+    np.float64: ("iuf", "numbers"),
+    np.int64: ("iu", "integers"),
+    np.bool_: ("b", "true or false"),
+}
+"""Kinds of numpy that may become one, and what they are called."""
+
+
 @dataclass(frozen=True)
-class _InFile(LeftToNumpy):
-    """An array's annotation: what stands for it in a file."""
+class ArrayOf(LeftToNumpy):
+    """An array's annotation: what stands for it in a file, and what it has to be.
+
+    Attributes:
+        form: the annotation of what stands for it in a file.
+        dtype: of the array.
+        width: of its rows, 0 for any; None for an array that is one row.
+        gaps: whether NaN is allowed.
+    """
 
     form: Any
+    dtype: type
+    width: int | None = None
+    gaps: bool = False
 
     def __get_pydantic_core_schema__(
         self, _source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
         return handler.generate_schema(self.form)
 
+    def of(self, content: Any, member: str) -> NDArray[Any]:
+        """An array of its own, which nobody can change.
 
-Numbers = Annotated[NDArray[np.float64], _InFile(list[float])]
-Integers = Annotated[NDArray[np.int64], _InFile(list[int])]
-Truths = Annotated[NDArray[np.bool_], _InFile(list[bool])]
-Rows = Annotated[NDArray[np.float64], _InFile(list[list[float]])]
-RowsOfThree = Annotated[NDArray[np.float64], _InFile(list[tuple[float, float, float]])]
-Triples = Annotated[NDArray[np.int64], _InFile(list[tuple[int, int, int]])]
-
-
-def rows_of(content: Any, width: int, member: str) -> NDArray[np.float64]:
-    """An array (k, width) of finite float64.
-
-    Raises:
-        InputError: it has another shape, or something in it is no finite number.
-    """
-    array = _array(content, np.float64, "iuf", "numbers", member)
-    if array.size == 0:
-        array = array.reshape(0, width)
-    if array.ndim != 2 or array.shape[1] != width:
-        raise InputError(None, member, f"each entry needs {width} numbers")
-    return _finite(array, member)
-
-
-def numbered_rows(content: Any, member: str) -> NDArray[np.float64]:
-    """An array (k, m) of float64, NaN allowed, of whatever width.
-
-    Raises:
-        InputError: it has another shape, or something in it is infinite or no number.
-    """
-    array = _array(content, np.float64, "iuf", "numbers", member)
-    if array.ndim != 2:
-        raise InputError(None, member, "must be rows of numbers")
-    bad = np.argwhere(np.isinf(array))
-    if len(bad):
-        raise InputError(None, f"{member}[{bad[0][0]}][{bad[0][1]}]", "is infinite")
-    return _settled(array)
+        Raises:
+            InputError: it has another shape, or something in it is not what it has to be.
+        """
+        kinds, text = _KINDS[self.dtype]
+        if not isinstance(content, np.ndarray):
+            content = validate_python(_forms(self.form), content, member)
+        elif content.size and content.dtype.kind not in kinds:
+            raise InputError(None, member, f"must be {text}, is an array of {content.dtype}")
+        try:
+            array: NDArray[Any] = np.array(content, dtype=self.dtype)
+        except OverflowError as error:
+            raise InputError(None, member, "a number is too large") from error
+        except ValueError as error:  # rows of different lengths
+            raise InputError(None, member, f"must be rows of {text} of one length") from error
+        if not array.size and self.width is not None and array.ndim < 2:
+            array = array.reshape(0, self.width)
+        if array.ndim != (1 if self.width is None else 2):
+            shape = "one row" if self.width is None else f"rows of {text}"
+            raise InputError(None, member, f"must be {shape}")
+        if self.width and array.shape[1] != self.width:
+            raise InputError(None, member, f"each entry needs {self.width} numbers")
+        bad = np.argwhere(np.isinf(array) if self.gaps else ~np.isfinite(array))
+        if len(bad):
+            place = "".join(f"[{number}]" for number in bad[0])
+            raise InputError(None, f"{member}{place}", "is not a finite number")
+        array.setflags(write=False)
+        return array
 
 
-def rows_of_three(content: Any, member: str) -> NDArray[np.float64]:
-    """An array (k, 3) of finite float64; see :func:`rows_of`."""
-    return rows_of(content, 3, member)
+@cache
+def _forms(form: Any) -> TypeAdapter[Any]:
+    return TypeAdapter(form, config=ConfigDict(strict=True))
 
 
-def numbers(content: Any, member: str) -> NDArray[np.float64]:
-    """An array (k,) of finite float64.
-
-    Raises:
-        InputError: it has another shape, or something in it is no finite number.
-    """
-    return _finite(_flat(_array(content, np.float64, "iuf", "numbers", member), member), member)
-
-
-def integers(content: Any, member: str) -> NDArray[np.int64]:
-    """An array (k,) of int64.
-
-    Raises:
-        InputError: it has another shape, or something in it is no integer.
-    """
-    return _settled(_flat(_array(content, np.int64, "iu", "integers", member), member))
+_Three = tuple[float, float, float]
+_NUMBERS = ArrayOf(tuple[float, ...], np.float64)
+_ROWS = ArrayOf(tuple[tuple[float, ...], ...], np.float64, 0)
+THREES = ArrayOf(tuple[_Three, ...], np.float64, 3)
+_TRIPLES = ArrayOf(tuple[tuple[int, int, int], ...], np.int64, 3)
+Numbers = Annotated[NDArray[np.float64], _NUMBERS]
+Integers = Annotated[NDArray[np.int64], ArrayOf(tuple[int, ...], np.int64)]
+Truths = Annotated[NDArray[np.bool_], ArrayOf(tuple[bool, ...], np.bool_)]
+Rows = Annotated[NDArray[np.float64], _ROWS]
+RowsWithGaps = Annotated[NDArray[np.float64], ArrayOf(_ROWS.form, np.float64, 0, gaps=True)]
+RowsOfThree = Annotated[NDArray[np.float64], THREES]
+Triples = Annotated[NDArray[np.int64], _TRIPLES]
 
 
-def truths(content: Any, member: str) -> NDArray[np.bool_]:
-    """An array (k,) of true and false.
+def check_lengths(value: Any, names: Collection[str], length: int, of: str) -> None:
+    """Refuse members of another length than they need; one that is None needs none.
 
     Raises:
-        InputError: it has another shape, or something in it is neither.
+        InputError: names the member.
     """
-    return _settled(_flat(_array(content, np.bool_, "b", "true or false", member), member))
-
-
-def _array(content: Any, kind: type, kinds: str, text: str, member: str) -> NDArray[Any]:
-    try:
-        array = np.array(content)
-    except ValueError as error:  # rows of different lengths
-        raise InputError(None, member, f"must be rows of {text} of one length") from error
-    if array.size and array.dtype.kind not in kinds:
-        raise InputError(None, member, f"must be {text}")
-    return array.astype(kind)
-
-
-def _flat(array: NDArray[Any], member: str) -> NDArray[Any]:
-    if array.ndim != 1:
-        raise InputError(None, member, "must be one row")
-    return array
-
-
-def _finite(array: NDArray[Any], member: str) -> NDArray[Any]:
-    bad = np.argwhere(~np.isfinite(array))
-    if len(bad):
-        place = "".join(f"[{number}]" for number in bad[0])
-        raise InputError(None, f"{member}{place}", "is not a finite number")
-    return _settled(array)
-
-
-def _settled(array: NDArray[Any]) -> NDArray[Any]:
-    array.setflags(write=False)
-    return array
+    for name in names:
+        content = getattr(value, name)
+        if content is not None and len(content) != length:
+            raise InputError(None, name, f"has {len(content)} entries for {length} {of}")

@@ -2,12 +2,28 @@
 
 from __future__ import annotations
 
-from typing import TypedDict
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from typing import Any, TypedDict
 
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.leaving_out import Wanted
 from cellcolor.questions.places import Place
 from cellcolor.solvers.interface import Options
+
+Telling = Callable[[str], None]
+
+
+class Work(TypedDict, total=False):
+    """How long something may take, and who hears of it.
+
+    Attributes:
+        time_limit: seconds for all of it, None or left out for as long as it takes.
+        progress: told what is being done.
+    """
+
+    time_limit: TimeLimit
+    progress: Telling | None
 
 
 class Search(TypedDict, total=False):
@@ -24,6 +40,12 @@ class Search(TypedDict, total=False):
     seed: int
 
 
+class SearchAndTell(Search, total=False):
+    """The same, with ``progress``: told what is being done."""
+
+    progress: Telling | None
+
+
 class SearchOfAPart(Search, total=False):
     """The same, with what has to be covered: the attributes of
     :class:`~cellcolor.door.leaving_out.Wanted`; without any of them it is everything."""
@@ -34,16 +56,25 @@ class SearchOfAPart(Search, total=False):
     uncovered_price: float | None
 
 
-def options_of(given: Search, kind: type[Search] = Search) -> Options:
+def begun(given: Work) -> tuple[Deadline, Telling]:
+    """When some work has to end, and whom to tell of it.
+
+    Raises:
+        TypeError: a keyword is none of these.
+        InputError: the time limit is no positive number of seconds.
+    """
+    _check_names(given, Work)
+    return Deadline.of(given.get("time_limit")), given.get("progress") or _nobody
+
+
+def options_of(given: Search, kind: type[Search] = SearchAndTell) -> Options:
     """The options of a search in the search space ``paper``.
 
     Raises:
         TypeError: a keyword is none of the kind.
         InputError: an option is out of its range.
     """
-    for name in given:
-        if name not in kind.__annotations__:
-            raise TypeError(f"got an unexpected keyword argument {name!r}")
+    _check_names(given, kind)
     workers, seed = given.get("workers"), given.get("seed", 0)
     return Options(deadline=Deadline.of(given.get("time_limit")), workers=workers, seed=seed)
 
@@ -54,9 +85,16 @@ def wanted_of(given: SearchOfAPart) -> Wanted:
     Raises:
         InputError: as of :class:`~cellcolor.door.leaving_out.Wanted`.
     """
-    return Wanted(
-        given.get("cover"),
-        given.get("required"),
-        given.get("left_alone"),
-        given.get("uncovered_price"),
-    )
+    known = {field.name for field in fields(Wanted)}
+    members: dict[str, Any] = {name: own for name, own in given.items() if name in known}
+    return Wanted(**members)
+
+
+def _check_names(given: Mapping[str, Any], kind: type) -> None:
+    for name in given:
+        if name not in kind.__annotations__:
+            raise TypeError(f"got an unexpected keyword argument {name!r}")
+
+
+def _nobody(_: str) -> None:
+    """Ignores progress when the caller gave no function for it."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
-from cellcolor.door.asked import Search, options_of
+from cellcolor.door.asked import SearchAndTell, options_of
 from cellcolor.door.drawing import save_plot
 from cellcolor.door.extras import extras_for
 from cellcolor.door.leaving_out import front_on
@@ -30,8 +30,7 @@ def tradeoff(
     weights: Sequence[float] | Array | None = None,
     required: Place | None = None,
     left_alone: Place | None = None,
-    progress: Callable[[str], None] | None = None,
-    **search: Unpack[Search],
+    **search: Unpack[SearchAndTell],
 ) -> Front:
     """Find the largest share of area that each number of lift-offs can cover, with proof.
 
@@ -41,8 +40,7 @@ def tradeoff(
         required: vertices that have to be covered: a mask (n,), a
             :class:`~cellcolor.questions.places.WorldBox`, or what a labelled surface gives up.
         left_alone: vertices that must not be covered, the same kinds; nothing is asked of them.
-        progress: told what is being done.
-        **search: time limit, workers and seed (:class:`~cellcolor.door.asked.Search`).
+        **search: :class:`~cellcolor.door.asked.SearchAndTell`.
 
     Returns:
         The front. Shares are of the area that can be covered and is not left alone.
@@ -52,7 +50,7 @@ def tradeoff(
             mask is of another mesh, or a weight is negative or no number.
         OutOfTime: the time limit came before any division was found.
     """
-    options = options_of(search)
+    options, progress = options_of(search), search.get("progress")
     subject = without_place(open_subject(source, options.deadline, progress), left_alone)
     return front_on(subject, weights, required, options, progress)
 
@@ -72,8 +70,7 @@ def explain(
     scene: str | PathLike[str] | Scene,
     *,
     at: Sequence[float] | None = None,
-    progress: Callable[[str], None] | None = None,
-    **search: Unpack[Search],
+    **search: Unpack[SearchAndTell],
 ) -> Explanation:
     """Find what costs a lift-off: the minimum with each limit, obstacle and test relaxed, proved.
 
@@ -83,8 +80,7 @@ def explain(
         scene: its file, its shipped name, or the value.
         at: (3,) a point in the world, m; the report also says what each branch does at the vertex
             nearest to it.
-        progress: told what is being tried.
-        **search: time limit, workers and seed (:class:`~cellcolor.door.asked.Search`).
+        **search: :class:`~cellcolor.door.asked.SearchAndTell`.
 
     Returns:
         Rows, ranked.
@@ -104,4 +100,4 @@ def explain(
         from cellcolor.frontend.prepared import prepare
         from cellcolor.questions.explaining import explained
 
-    return explained(prepare(scene, options.deadline), options, point, progress)
+    return explained(prepare(scene, options.deadline), options, point, search.get("progress"))

@@ -50,19 +50,17 @@ class ContactColoring:
 
 
 @dataclass(frozen=True)
-class PathColors:
-    """The coloring that a path makes.
+class PathColors(ContactColoring):
+    """The coloring that a path makes, and what is wrong with it.
 
     Attributes:
-        path: its samples.
-        coloring: the coloring of the surface by its contacts.
+        strokes: of the path.
         violations: the vertices that get no contact in one of their colors.
         problems: the same in sentences, after those about samples.
         reachable: how many vertices have colors.
     """
 
-    path: ContactPath
-    coloring: ContactColoring
+    strokes: int
     violations: tuple[JointViolation, ...]
     problems: tuple[str, ...]
     reachable: int
@@ -146,7 +144,8 @@ def colors_of_path(subject: Subject, given: AnyPath, deadline: Deadline = NEVER)
         for sample, by in zip(found.misplaced.tolist(), found.misplaced_by.tolist(), strict=True)
     ]
     problems = (*misplaced, *map(str, violations))
-    return PathColors(path, coloring, tuple(violations), problems, len(reachable))
+    wrong = tuple(violations), problems, len(reachable)
+    return PathColors(coloring.plan, coloring.color_changes, coloring.runs, path.strokes, *wrong)
 
 
 def coloring_of(surface: LabelledSurface, contacts: VertexContacts) -> ContactColoring:

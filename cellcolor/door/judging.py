@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import Any, overload
+from typing import Any, Unpack, overload
 
 from cellcolor.checker.claimed_numbers import contradictions
 from cellcolor.checker.color_regions import regions_on_surface
@@ -17,9 +17,10 @@ from cellcolor.data.trajectory_csv import TrajectoryTable
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.data.wording import lift_offs_of
 from cellcolor.deadline import Deadline, TimeLimit
+from cellcolor.door.asked import Search
 from cellcolor.door.extras import extras_for
 from cellcolor.door.leaving_out import left_alone as without_place
-from cellcolor.door.oracle import AnyPlan, Oracle
+from cellcolor.door.oracle import SECONDS, AnyPlan, Oracle
 from cellcolor.door.reading import ReadTrajectory, format_of_claim, read_trajectory
 from cellcolor.door.result import Result
 from cellcolor.door.shipped import find_claim
@@ -154,9 +155,7 @@ def proven_range(
     surface: Solvable,
     *,
     strands: int | None = None,
-    time_limit: TimeLimit = 60.0,
-    workers: int | None = None,
-    seed: int = 0,
+    **search: Unpack[Search],
 ) -> ProvenRange:
     """The proven range of the fewest segments of a labelled surface.
 
@@ -164,17 +163,15 @@ def proven_range(
         surface: a labelled surface or a scene: its file, its shipped name, the value.
         strands: corridors that may cross one topological edge, None for the usual number; more
             may lower the upper end.
-        time_limit: seconds, None for no limit; both ends hold however early it ends.
-        workers: CP-SAT's search workers, None for its portfolio.
-        seed: for all random choices.
+        **search: :class:`~cellcolor.door.asked.Search`. The time limit is 60 s if it is left out;
+            both ends hold however early it ends.
 
     Raises:
         InputError: the surface or an option cannot be used.
         OutOfTime: the time limit came before there was a surface.
     """
-    deadline = Deadline.of(time_limit)
-    subject = open_subject(surface, deadline)
-    return Oracle(subject, strands=strands, workers=workers, seed=seed).prove(deadline).bounds
+    search["time_limit"] = Deadline.of(search.get("time_limit", SECONDS))  # one for all of it
+    return Oracle(surface, strands=strands, **search).bounds
 
 
 def judge(

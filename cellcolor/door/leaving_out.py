@@ -13,7 +13,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.prices import check_price
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
-from cellcolor.questions.front import Front, FrontChoice, FrontPoint
+from cellcolor.questions.front import Front
 from cellcolor.questions.places import Place, chosen
 from cellcolor.solvers.interface import Options
 
@@ -94,13 +94,13 @@ def rest_of(
     front = front_on(subject, None, wanted.required, options)
     if wanted.uncovered_price is not None:
         choice = front.cheapest(wanted.uncovered_price)
-        point = choice.point
-        notes += (_price_in_words(choice, wanted.uncovered_price),)
+        why = f"Leaving out all that can be covered costs {wanted.uncovered_price:g} lift-offs"
     else:
         assert wanted.cover is not None
-        point = front.at_least(wanted.cover)
-        notes += (_share_in_words(front, point, wanted.cover),)
-    return _without_cells(subject, point.left_out), notes, point.covered_share
+        choice = front.fewest_for(wanted.cover)
+        why = f"{100 * wanted.cover:.1f} % of what can be covered is asked for"
+    notes += (f"{why}; covered with {choice}. The rest is left out on purpose.",)
+    return _without_cells(subject, choice.point.left_out), notes, choice.point.covered_share
 
 
 def left_alone(subject: Subject, place: Place | None) -> Subject:
@@ -159,31 +159,6 @@ def _without_cells(subject: Subject, cells: Sequence[int]) -> Subject:
     if subject.given_instance is not None:
         return Subject(None, given_instance=subject.given_instance.without_cells(cells)[0])
     return _restricted(subject, np.isin(_cells(subject), cells))
-
-
-def _share_in_words(front: Front, point: FrontPoint, cover: float) -> str:
-    text = (
-        f"{point.covered_share:.1%} of what can be covered has to be, since {cover:.1%} is asked "
-        "for; the rest is left out on purpose"
-    )
-    fewer = [other for other in front if other.segments < point.segments]
-    if not fewer:
-        return f"{text}."
-    most = fewer[-1].at_most_share
-    if point.segments != fewer[-1].segments + 1 or most >= cover:
-        return f"{text}; it is not proved that fewer segments do not cover as much."
-    sure = "any division of the surface" if fewer[-1].holds_for_surface else "search space paper"
-    return f"{text}; with one segment fewer it is at most {most:.1%}, proved for {sure}."
-
-
-def _price_in_words(choice: FrontChoice, uncovered_price: float) -> str:
-    text = (
-        f"{choice.point.covered_share:.1%} of what can be covered has to be: if leaving out all of "
-        f"it costs as much as {uncovered_price:g} lift-offs, this costs least"
-    )
-    if choice.proved_for_surface:
-        return f"{text}, proved for any division of the surface."
-    return f"{text}, {'proved for search space paper' if choice.proved else 'not proved'}."
 
 
 def _cells(subject: Subject) -> np.ndarray:

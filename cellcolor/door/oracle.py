@@ -10,7 +10,7 @@ from dataclasses import fields, replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Any, TypeAlias, overload
+from typing import Any, TypeAlias, Unpack, overload
 
 from numpy.typing import NDArray
 
@@ -22,7 +22,8 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
-from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.door.asked import Search, options_of
 from cellcolor.door.joint_plans import AnyPath, PathColors, colors_of_joints, colors_of_path
 from cellcolor.door.reading import color_numbers, read_claim
 from cellcolor.door.result import Result
@@ -32,6 +33,8 @@ from cellcolor.oracle import BetterPainting, PathVerdict, Proof, ProvenRange, Ve
 from cellcolor.oracle.improvement import better_painting, improvement_of
 from cellcolor.oracle.proof_cache import ProofCache
 from cellcolor.painting.paint import paint
+
+SECONDS = 60.0  # of a proof, unless somebody says otherwise
 
 AnyPlan: TypeAlias = (
     Plan
@@ -65,22 +68,18 @@ class Oracle:
         self,
         source: Solvable,
         *,
-        time_limit: TimeLimit = 60.0,
         strands: int | None = None,
-        workers: int | None = None,
-        seed: int = 0,
         bounds: ProvenRange | None = None,
+        **search: Unpack[Search],
     ) -> None:
         """Open the surface; nothing is proved yet.
 
         Args:
             source: a labelled surface, a scene, or an instance that names its surface: its file,
                 its shipped name, the value.
-            time_limit: seconds for the proof, and for building a scene before; None for as long
-                as it takes.
             strands: corridors that may cross one topological edge, None for the usual number.
-            workers: CP-SAT's search workers, None for its portfolio.
-            seed: for all random choices.
+            **search: :class:`~cellcolor.door.asked.Search`: of the proof. The time limit, 60 s if
+                it is left out, is one for building a scene as well.
             bounds: this surface's proven range, if it is known already: then nothing is proved,
                 and no better plan is looked for.
 
@@ -91,9 +90,14 @@ class Oracle:
         if bounds is not None and not isinstance(bounds, ProvenRange):
             message = f"must be what cellcolor.proven_range returns, is {bounds!r:.100}"
             raise InputError(None, "bounds", message)
-        self._time_limit = time_limit
-        self._subject = open_subject(source, Deadline.of(time_limit))
-        self._options: dict[str, Any] = {"strands": strands, "workers": workers, "seed": seed}
+        self._time_limit = search.get("time_limit", SECONDS)
+        options = options_of(search, Search)
+        self._subject = open_subject(source, Deadline.of(self._time_limit))
+        self._options: dict[str, Any] = {
+            "strands": strands,
+            "workers": options.workers,
+            "seed": options.seed,
+        }
         self._known = bounds
         self._proof = None if bounds is None else Proof(bounds)
         self._painting: BetterPainting | None = None
@@ -121,9 +125,12 @@ class Oracle:
             InputError: a cell of the surface is not planar, or an option is out of its range.
         """
         if self._proof is None:
-            with naming(self._subject.path):
-                self._proof = prove(self.surface, deadline, **self._options)
+            self._proof = self._made(deadline)
         return self._proof
+
+    def _made(self, deadline: Deadline) -> Proof:
+        with naming(self._subject.path):
+            return prove(self.surface, deadline, **self._options)
 
     @property
     def best(self) -> BetterPainting | None:
@@ -240,20 +247,14 @@ class Oracle:
 
     def _of_path(self, found: PathColors, deadline: Deadline) -> PathVerdict:
         """The verdict on a tool path, by what it comes to in colors."""
-        coloring = found.coloring
-        about: dict[str, Any] = {
-            "surface": self.surface,
-            "plan": coloring.plan,
-            "strokes": found.path.strokes,
-            "color_changes": coloring.color_changes,
-            "reachable": found.reachable,
-            "untouched": len(found.violations),
-        }
+        alike = ("plan", "strokes", "color_changes", "reachable")
+        about: dict[str, Any] = {name: getattr(found, name) for name in alike}
+        about |= {"surface": self.surface, "untouched": len(found.violations)}
         if found.problems:
             return PathVerdict(found.problems, None, self._known, found.violations, **about)
-        of_colors = self._of_colors(coloring.plan, deadline)
+        of_colors = self._of_colors(found.plan, deadline)
         own = {member.name: getattr(of_colors, member.name) for member in fields(Verdict)}
-        return PathVerdict(**own | about, runs=coloring.runs)
+        return PathVerdict(**own | about, runs=found.runs)
 
     def __repr__(self) -> str:
         proved = "" if self._proof is None else f", {self._proof.bounds}"
@@ -286,31 +287,24 @@ class KeepingOracle(Oracle):
         super().__init__(source, time_limit=time_limit)
         self._seconds = time_limit
         self._cache = None if folder is None else ProofCache(folder)
-        self._kept: Proof | None = None
 
-    def prove(self, deadline: Deadline) -> Proof:
+    def _made(self, deadline: Deadline) -> Proof:
         """The proof on disk, or else one made now.
 
         If a kept bound has no certificate, the surface is proved again. If there is no time for it,
         ``kept_lower`` is the unverified bound.
-
-        Raises:
-            InputError: a cell of the surface is not planar, or the folder cannot be written to.
         """
-        if self._kept is not None:
-            return self._kept
-        kept = (
-            None if self._cache is None else self._cache.get(self.surface, self._seconds, deadline)
-        )
-        if kept is None or kept.kept_lower is not None:
-            proved = super().prove(deadline)
-            if kept is None or proved.bounds.lower >= (kept.kept_lower or 0):
-                kept = proved
-                if self._cache is not None:
-                    self._cache.put(self.surface, self._seconds, kept)
-            elif proved.solution is not None and proved.bounds.upper <= kept.bounds.upper:
-                lower = max(kept.bounds.lower, proved.bounds.lower)
-                bounds = ProvenRange(lower, proved.bounds.upper)
-                kept = replace(proved, bounds=bounds, kept_lower=kept.kept_lower)
-        self._kept = kept
-        return kept
+        if self._cache is None:
+            return super()._made(deadline)
+        kept = self._cache.get(self.surface, self._seconds, deadline)
+        if kept is not None and kept.kept_lower is None:
+            return kept
+        proved = super()._made(deadline)
+        if kept is None or proved.bounds.lower >= (kept.kept_lower or 0):
+            self._cache.put(self.surface, self._seconds, proved)
+            return proved
+        if proved.solution is None or proved.bounds.upper > kept.bounds.upper:
+            return kept
+        lower = max(kept.bounds.lower, proved.bounds.lower)
+        bounds = ProvenRange(lower, proved.bounds.upper)
+        return replace(proved, bounds=bounds, kept_lower=kept.kept_lower)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, TimeLimit
+from cellcolor.door.asked import Work, begun
 from cellcolor.door.extras import require_motion
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Solvable, open_subject
@@ -90,8 +90,7 @@ def cover(
     spacing_m: float,
     tool_radius_m: float,
     normals: Any = None,
-    time_limit: TimeLimit = None,
-    progress: Callable[[str], None] | None = None,
+    **work: Unpack[Work],
 ) -> Covered:
     """Lay one continuous path on every segment of a painted surface (docs/motion.md).
 
@@ -102,8 +101,7 @@ def cover(
         spacing_m: desired distance between neighboring passes, m.
         tool_radius_m: of the tool's footprint, m.
         normals: (n, 3) outward unit normals at the vertices; those of the mesh if it is None.
-        time_limit: seconds, None for no limit.
-        progress: told the name of each stage as it begins.
+        **work: :class:`~cellcolor.door.asked.Work`; told is the name of each stage as it begins.
 
     Returns:
         The paths, with the area they cover, how often they pass it and what stays uncovered.
@@ -112,7 +110,7 @@ def cover(
         InputError: something cannot be used, or the plan does not fit the surface.
         OutOfTime: the time limit came first.
     """
-    deadline = Deadline.of(time_limit)
+    deadline, progress = begun(work)
     if isinstance(surface, Painted):
         if plan is not None:
             raise InputError(None, "plan", "is already set by what was painted")
@@ -153,9 +151,9 @@ def cover(
 
 def _unit_rows(normals: Any, count: int) -> Array:
     """Normals of length 1."""
-    from cellcolor.data.value import rows_of_three
+    from cellcolor.data.value import THREES
 
-    rows = rows_of_three(normals, "normals")
+    rows = THREES.of(normals, "normals")
     if len(rows) != count:
         raise InputError(None, "normals", f"has {len(rows)} entries for {count} vertices")
     lengths = np.linalg.norm(rows, axis=1)

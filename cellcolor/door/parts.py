@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import contextmanager
 from os import PathLike
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from cellcolor.deadline import Deadline, TimeLimit
+from cellcolor.deadline import Deadline
+from cellcolor.door.asked import Telling, Work, begun
 from cellcolor.door.drawing import Drawing
 from cellcolor.door.extras import extras_for
 from cellcolor.errors import InputError, naming
@@ -19,15 +20,12 @@ if TYPE_CHECKING:
     from cellcolor.frontend.parts.inspection import Inspection
     from cellcolor.frontend.parts.repairing import RepairedPart
 
-Telling = Callable[[str], None]
-
 
 def inspect(
     part: Any,
     *,
     unit: str | None = None,
-    time_limit: TimeLimit = None,
-    progress: Callable[[str], None] | None = None,
+    **work: Unpack[Work],
 ) -> Inspection:
     """Report what a part's mesh has, what is wrong with it, and what a repair would change.
 
@@ -35,19 +33,16 @@ def inspect(
         part: a mesh file (STL, OBJ, PLY), a ``trimesh.Trimesh``, or vertices (n, 3) and faces
             (m, 3).
         unit: ``m``, ``mm``, ``cm`` or ``in``; without it the likely unit is taken and reported.
-        time_limit: seconds, None for no limit.
-        progress: told what is being done.
+        **work: :class:`~cellcolor.door.asked.Work`.
 
     Raises:
         InputError: it cannot be read or looked through; names file and element.
         OutOfTime: the time limit came first.
     """
-    deadline, tell = Deadline.of(time_limit), progress or _nobody
-    name, file = _name(part)
-    with naming(file), extras_for(name):
+    deadline, tell = begun(work)
+    with _opened(part, deadline, tell) as (name, vertices, faces):
         from cellcolor.frontend.parts.inspection import inspect_mesh
 
-        vertices, faces = _mesh(part, deadline, tell)
         return inspect_mesh(name, vertices, faces, unit, deadline, tell)
 
 
@@ -58,8 +53,7 @@ def repair(
     fill_holes_m: float = 0.0,
     least_component: float | None = None,
     edge_length_m: float | None = None,
-    time_limit: TimeLimit = None,
-    progress: Callable[[str], None] | None = None,
+    **work: Unpack[Work],
 ) -> RepairedPart:
     """A part's mesh repaired, so that a scene can use it.
 
@@ -70,20 +64,17 @@ def repair(
         least_component: components with less than this share of the largest one's area are
             dropped; a hundredth if it is not given.
         edge_length_m: remesh to edges of about that length; needs the extra ``parts``.
-        time_limit: seconds, None for no limit.
-        progress: told what is being done.
+        **work: :class:`~cellcolor.door.asked.Work`.
 
     Raises:
         InputError: it cannot be read or made good; names file and element.
         OutOfTime: the time limit came first.
     """
-    deadline, tell = Deadline.of(time_limit), progress or _nobody
-    name, file = _name(part)
-    with naming(file), extras_for(name):
+    deadline, tell = begun(work)
+    with _opened(part, deadline, tell) as (_, vertices, faces):
         from cellcolor.frontend.parts.mesh_file import UNITS
         from cellcolor.frontend.parts.repairing import LEAST_SHARE, repair_mesh
 
-        vertices, faces = _mesh(part, deadline, tell)
         scale = UNITS[_unit(vertices, unit)]
         share = LEAST_SHARE if least_component is None else least_component
         return repair_mesh(
@@ -99,28 +90,21 @@ def draw_inspection(inspection: Inspection) -> Drawing:
         return Drawing(faulty_part(inspection))
 
 
-def _nobody(_: str) -> None:
-    """Ignores progress when the caller gave no function for it."""
+@contextmanager
+def _opened(part: Any, deadline: Deadline, tell: Telling) -> Iterator[tuple[str, Any, Any]]:
+    """A part's name, vertices and faces; errors inside name its file and the extra they lack."""
+    path = path_of(part) if isinstance(part, str | PathLike) else None
+    name = "part" if path is None else path.name
+    with naming(path), extras_for(name):
+        from cellcolor.frontend.parts.mesh import ArraysObject
+        from cellcolor.frontend.parts.mesh_file import read_mesh
 
-
-def _name(part: Any) -> tuple[str, str | None]:
-    """What to call a part, and its file if it has one."""
-    if isinstance(part, str | PathLike):
-        path = path_of(part)
-        return path.name, str(path)
-    return "part", None
-
-
-def _mesh(part: Any, deadline: Deadline, tell: Telling) -> tuple[Any, Any]:
-    """Vertices and faces of a file or a value."""
-    from cellcolor.frontend.parts.mesh import ArraysObject
-    from cellcolor.frontend.parts.mesh_file import read_mesh
-
-    if isinstance(part, str | PathLike):
+        if path is None:
+            own = ArraysObject.of(part)
+            yield name, own.vertices, own.faces
+            return
         tell("reading")
-        return read_mesh(Path(path_of(part)), deadline)
-    own = ArraysObject.of(part)
-    return own.vertices, own.faces
+        yield name, *read_mesh(path, deadline)
 
 
 def _unit(vertices: Any, unit: str | None) -> str:

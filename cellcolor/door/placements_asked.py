@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Annotated, Any
 
 from annotated_types import Ge, Le
@@ -18,7 +17,7 @@ from cellcolor.errors import CellcolorError, InputError
 from cellcolor.lab.runs.table import TableFile
 from cellcolor.lab.workers import Task, Workers, as_they_end
 from cellcolor.processes import Limits
-from cellcolor.questions.placements import PlacedMinimum, Pose
+from cellcolor.questions.placements import PlacedMinimum, PlacementQuestion, Pose
 from cellcolor.version import __version__
 
 if TYPE_CHECKING:
@@ -69,83 +68,54 @@ class PlacementRow:
         )
 
 
-class PlacementTable(AbstractContextManager["PlacementTable"]):
-    """The known minima of placements, kept in a file row by row if there is one.
+class AskedPlacements(AbstractContextManager["AskedPlacements"]):
+    """Computes minima of placements, and keeps them, in a file row by row if there is one.
 
     Args:
-        scene: the scene of the placements.
+        scene: the scene of the placements; its own placement does not matter.
         path: the file; an existing table is continued. None writes no file.
-        base: whether the placements are those of the arm's base.
+        question: whether the arm's base is moved instead of the part, and the seed.
+        deadline: for everything together.
+        report: is told how many placements are done.
 
     Raises:
         InputError: the file is no such table, is damaged, or belongs to another scene.
     """
 
-    def __init__(self, scene: Scene, path: Path | None, base: bool = False) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        path: Path | None,
+        question: PlacementQuestion,
+        deadline: Deadline,
+        report: Callable[[str], None],
+    ) -> None:
+        self._question, self._deadline, self._report = question, deadline, report
+        self._done = 0
         self._known: dict[tuple[str, Pose], PlacedMinimum] = {}
         self._file: TableFile[PlacementRow] | None = None
         if path is None:
             return
-        self._scene = _fingerprint(scene, base)
+        self._scene = _fingerprint(scene, question.base)
         self._file = TableFile(path, PlacementRow)
         for number, row in enumerate(self._file.rows, 2):
             if row.scene != self._scene:
-                self._file.__exit__(None, None, None)
+                self.__exit__()
                 message = "is a placement of another scene, or of one that has changed since"
                 raise InputError(str(path), f"line {number}", message)
             self._known[row.mesh, row.minimum.pose] = row.minimum
 
-    def get(self, mesh: str, pose: Pose) -> PlacedMinimum | None:
-        """The known minimum of a placement on a mesh; None if unknown."""
-        return self._known.get((mesh, pose))
-
-    def add(self, mesh: str, row: PlacedMinimum) -> None:
-        """Keep a row; write it to the file only if another run could not improve it."""
-        self._known[mesh, row.pose] = row
-        if self._file is not None and (row.proved_for_surface or row.refused):
-            found = row.segments, row.covered_share, row.proved_for_surface, row.vertices
-            self._file.append(PlacementRow(self._scene, mesh, *row.pose, *found, row.refused))
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         if self._file is not None:
-            self._file.__exit__(kind, error, trace)
+            self._file.__exit__()
 
-
-class AskedPlacements:
-    """Computes minima of placements, in this process or in others.
-
-    Args:
-        workers: the processes that compute; None for this one.
-        table: the known minima; new ones are added.
-        deadline: for everything together.
-        seed: of everything random.
-        report: is told how many placements are done.
-        base: whether the arm's base is moved instead of the part.
-    """
-
-    def __init__(
-        self,
-        workers: Workers | None,
-        table: PlacementTable,
-        deadline: Deadline,
-        seed: int,
-        report: Callable[[str], None],
-        base: bool = False,
-    ) -> None:
-        self._base = base
-        self._workers, self._table, self._deadline = workers, table, deadline
-        self._seed, self._report = seed, report
-        self._done = 0
-
-    def minima(self, scene: Scene, mesh: str, poses: Sequence[Pose]) -> list[PlacedMinimum]:
+    def minima(
+        self, workers: Workers | None, scene: Scene, mesh: str, poses: Sequence[Pose]
+    ) -> list[PlacedMinimum]:
         """A row for each placement, in order; fewer if the deadline comes first.
 
         Args:
+            workers: the processes that compute; None for this one.
             scene: its own placement does not matter.
             mesh: what the table calls this scene's mesh.
 
@@ -154,38 +124,42 @@ class AskedPlacements:
             CellcolorError: a task failed, or its process was lost in every attempt.
         """
         self._deadline.check()
-        slots = 1 if self._workers is None else self._workers.slots
-        new = [pose for pose in dict.fromkeys(poses) if self._table.get(mesh, pose) is None]
+        slots = 1 if workers is None else workers.slots
+        new = [pose for pose in dict.fromkeys(poses) if (mesh, pose) not in self._known]
         size = min(_BATCH, -(-len(new) // slots) or 1)
         parts = [new[at : at + size] for at in range(0, len(new), size)]
-        for rows in self._asked(scene, parts):
+        for rows in self._asked(workers, scene, parts):
             for row in rows:
-                self._table.add(mesh, row)
+                self._keep(mesh, row)
             self._done += len(rows)
             self._report(f"{self._done} placements")
-        found = [self._table.get(mesh, pose) for pose in poses]
-        return [row for row in found if row is not None]
+        return [self._known[mesh, pose] for pose in poses if (mesh, pose) in self._known]
+
+    def _keep(self, mesh: str, row: PlacedMinimum) -> None:
+        """Keep a row; write it to the file only if another run could not improve it."""
+        self._known[mesh, row.pose] = row
+        if self._file is not None and (row.proved_for_surface or row.refused):
+            found = row.segments, row.covered_share, row.proved_for_surface, row.vertices
+            self._file.append(PlacementRow(self._scene, mesh, *row.pose, *found, row.refused))
 
     def _asked(
-        self, scene: Scene, parts: Sequence[Sequence[Pose]]
+        self, workers: Workers | None, scene: Scene, parts: Sequence[Sequence[Pose]]
     ) -> Iterator[list[PlacedMinimum]]:
         """The rows of each part, in the order in which the parts are done."""
         from cellcolor.questions.placing import minima_at
 
-        if self._workers is None:
+        how = 1, self._question.seed, self._question.base
+        if workers is None:
             for part in parts:
-                yield minima_at(scene, part, self._deadline.left, 1, self._seed, self._base)
+                yield minima_at(scene, part, self._deadline.left, *how)
             return
         lost = list(parts)
         for attempt in range(1, _ATTEMPTS + 1):
             left = self._deadline.left
             limits = Limits(min(left, _ALL_DAY) + _ENDING)
-            tasks = [
-                (part, Task(minima_at, (scene, part, left, 1, self._seed, self._base), limits))
-                for part in lost
-            ]
+            tasks = [(part, Task(minima_at, (scene, part, left, *how), limits)) for part in lost]
             lost = []
-            for part, ended in as_they_end(self._workers, tasks):
+            for part, ended in as_they_end(workers, tasks):
                 if ended.end in ("done", "timeout", "stopped"):
                     yield ended.value or []
                 elif ended.end == "failed" or attempt == _ATTEMPTS:

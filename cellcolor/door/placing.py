@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
+from functools import partial
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
-from cellcolor.deadline import Deadline, TimeLimit
+from cellcolor.door.asked import Work, begun
 from cellcolor.door.drawing import save_plot
 from cellcolor.door.extras import extras_for
-from cellcolor.door.placements_asked import AskedPlacements, PlacementTable
+from cellcolor.door.placements_asked import AskedPlacements
 from cellcolor.door.subject import scene_or_file
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
@@ -26,8 +26,6 @@ def place(
     *,
     table: str | PathLike[str] | None = None,
     jobs: int | Workers = 1,
-    time_limit: TimeLimit = None,
-    progress: Callable[[str], None] | None = None,
     **question: Any,
 ) -> Placements:
     """Look for placements of a scene's part that need fewer lift-offs, and prove the best ones.
@@ -39,17 +37,17 @@ def place(
         table: a CSV file in which each row is kept as it is proved; one that is there is continued,
             and what it has is not asked again.
         jobs: processes at a time, or who does the work.
-        time_limit: seconds for all of it, None for no limit.
-        progress: told what is being done.
         **question: the ranges ``x``, ``y``, ``z``, ``roll``, ``pitch`` and ``yaw``, and whatever
-            else :class:`~cellcolor.questions.placements.PlacementQuestion` has.
+            else :class:`~cellcolor.questions.placements.PlacementQuestion` and
+            :class:`~cellcolor.door.asked.Work` have.
 
     Raises:
         InputError: the scene cannot be used; a range, a share or a number is none; or the table is
             damaged or of another scene.
         OutOfTime: the time limit came before the scene itself was solved.
     """
-    deadline, report = Deadline.of(time_limit), progress or (lambda _: None)
+    work: Any = {name: question.pop(name) for name in Work.__annotations__ if name in question}
+    deadline, report = begun(work)
     scene = scene_or_file(scene)
     asked = PlacementQuestion.of(**question)
     if isinstance(jobs, int) and jobs < 1:
@@ -64,13 +62,13 @@ def place(
         workers = jobs
     elif jobs > 1:
         workers = LocalWorkers(jobs)
+    file = None if table is None else path_of(table)
     with (
-        PlacementTable(own, None if table is None else path_of(table), asked.base) as known,
+        AskedPlacements(own, file, asked, deadline, report) as placements,
         workers as others,
     ):
-        given = known, deadline, asked.seed, report, asked.base
-        alone, many = AskedPlacements(None, *given), AskedPlacements(others, *given)
-        return search_places(own, asked, alone.minima, many.minima, deadline, report)
+        alone, many = partial(placements.minima, None), partial(placements.minima, others)
+        return search_places(own, asked, alone, many, deadline, report)
 
 
 def save_map(found: Placements, path: str | PathLike[str]) -> None:

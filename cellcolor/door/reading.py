@@ -19,29 +19,20 @@ from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable, read_trajectory_csv
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
-from cellcolor.data.value import Document
+from cellcolor.data.value import Document, read_one_of
 from cellcolor.door.extras import extras_for
 from cellcolor.door.shipped import find_file
 from cellcolor.door.subject import is_scene
-from cellcolor.errors import InputError, naming
-from cellcolor.files.documents import parse_first_object, read_document, read_text
+from cellcolor.errors import InputError
+from cellcolor.files.documents import read_document, read_text
 
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene, Setup
 
-_KINDS: dict[str, type[Document]] = {
-    kind.FORMAT: kind
-    for kind in (
-        LabelledSurface,
-        Instance,
-        Solution,
-        Plan,
-        ToolPaths,
-        Trajectory,
-        TrajectoryVerdict,
-        LibraryIndex,
-    )
-}
+_KINDS: tuple[type[Document], ...] = (
+    *(LabelledSurface, Instance, Solution, Plan),
+    *(ToolPaths, Trajectory, TrajectoryVerdict, LibraryIndex),
+)
 ReadTrajectory: TypeAlias = Trajectory | TrajectoryTable
 """A trajectory, or a table that a scene's arm has to complete."""
 _SETUP = re.compile(r"^[ \t]*\[?[ \t]*robot\b", re.MULTILINE)
@@ -63,15 +54,7 @@ def read(source: str | PathLike[str]) -> Any:
         InputError: the file cannot be read, or contains something that its format forbids.
     """
     path = find_file(source)
-    if is_scene(path):
-        return _read_toml(path)
-    with naming(path):
-        document = parse_first_object(read_text(path))
-        form = document.get("format")
-        if not isinstance(form, str) or form not in _KINDS:
-            known = ", ".join(map(repr, _KINDS))
-            raise InputError(None, "format", f"must be one of {known}, is {form!r}")
-        return _KINDS[form].from_document(document)
+    return _read_toml(path) if is_scene(path) else read_one_of(path, _KINDS)
 
 
 def _read_toml(path: Path) -> Scene | Setup:
@@ -97,10 +80,10 @@ def read_claim(file: str | PathLike[str]) -> Plan | Solution | ReadTrajectory:
     Raises:
         InputError: it cannot be used; names file and member.
     """
-    form = format_of_claim(file)
-    if form == Trajectory.FORMAT:
-        return read_trajectory(file)
-    return Plan.read(file) if form == Plan.FORMAT else Solution.read(file)
+    if _is_table(file):
+        return read_trajectory_csv(file)
+    found: Plan | Solution | Trajectory = read_one_of(file, (Plan, Solution, Trajectory))
+    return found
 
 
 def read_trajectory(file: str | PathLike[str]) -> ReadTrajectory:

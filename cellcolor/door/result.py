@@ -5,19 +5,17 @@ from __future__ import annotations
 import html
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import NamedTuple
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.shares import BASES, segment_rows, shares_of
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.value import Drawn
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
 from cellcolor.files.writing import Output, write
-
-if TYPE_CHECKING:
-    import cellcolor
 
 
 class GapStep(NamedTuple):
@@ -35,7 +33,7 @@ class GapStep(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class Result:
+class Result(Drawn):
     """The fewest segments that were found, and what is proved about them.
 
     Attributes:
@@ -87,20 +85,6 @@ class Result:
             InputError: there is something else, or it cannot be written.
         """
         write([Output.of(path_of(path), self.solution)])
-
-    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
-        """Draw the segments on the surface, or the graph where there is no surface.
-
-        Args:
-            path: a file .html, .png or .svg; None draws without writing, for notebooks.
-            view: what else to look at, see ``cellcolor.show``.
-
-        Raises:
-            InputError: the extra ``viz`` is not installed, or the file cannot be written.
-        """
-        import cellcolor  # the whole package's face, which only somebody who looks at it needs
-
-        return cellcolor.show(self, path, **view)
 
     def __str__(self) -> str:
         return self.solution.in_words(self.instance)

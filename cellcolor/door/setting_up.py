@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
 from cellcolor.data.prices import check_change_over
+from cellcolor.data.value import Value
 from cellcolor.deadline import Deadline, TimeLimit
-from cellcolor.door.asked import Search, options_of
+from cellcolor.door.asked import SearchAndTell, options_of
 from cellcolor.door.extras import extras_for
 from cellcolor.door.painting import paint
 from cellcolor.door.planned import PlannedScene
@@ -19,6 +21,7 @@ from cellcolor.door.planning import plan
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Subject, scene_or_file
 from cellcolor.errors import InputError
+from cellcolor.files.documents import parse_json, read_text
 from cellcolor.questions.placements import PlacedMinimum, Placements, Pose
 from cellcolor.questions.set_ups import SetUpPlan
 
@@ -63,18 +66,11 @@ class ChosenSetUps:
                 own[vertex] = int(names[color].partition(":")[0])
         return [own != one.number for one in self.answer.set_ups]
 
-    def plan(
-        self,
-        *,
-        time_limit: TimeLimit = None,
-        progress: Callable[[str], None] | None = None,
-        **given: Any,
-    ) -> list[PlannedScene]:
+    def plan(self, *, time_limit: TimeLimit = None, **given: Any) -> list[PlannedScene]:
         """A judged motion for each set-up, which paints its own part of the surface.
 
         Args:
             time_limit: seconds for all of them, None for as long as it takes.
-            progress: told what is being done.
             **given: what ``cellcolor.plan`` takes besides.
 
         Raises:
@@ -82,7 +78,7 @@ class ChosenSetUps:
         """
         deadline = Deadline.of(time_limit)
         return [
-            plan(scene, left_alone=mask, time_limit=deadline, progress=progress, **given)
+            plan(scene, left_alone=mask, time_limit=deadline, **given)
             for scene, mask in zip(self.scenes, self.left_alone(), strict=True)
         ]
 
@@ -100,8 +96,7 @@ def setups(
     others: Sequence[str | PathLike[str] | Scene] = (),
     cover: float = 1.0,
     change_over: float | None = None,
-    progress: Callable[[str], None] | None = None,
-    **search: Unpack[Search],
+    **search: Unpack[SearchAndTell],
 ) -> ChosenSetUps:
     """Choose set-ups of a part that cover enough with the fewest lift-offs, with proof.
 
@@ -115,8 +110,7 @@ def setups(
         cover: the share that has to be covered of the area that any candidate reaches, 0 to 1.
         change_over: what a change from one set-up to the next costs, in lift-offs, 1 to 1,000,000
             with up to three decimals; None for the fewest set-ups first, then the fewest lift-offs.
-        progress: told what is being done.
-        **search: time limit, workers and seed (:class:`~cellcolor.door.asked.Search`).
+        **search: :class:`~cellcolor.door.asked.SearchAndTell`.
 
     Raises:
         InputError: a scene cannot be used, a place or a share is none, another scene has another
@@ -129,7 +123,7 @@ def setups(
         raise InputError(None, "cover", f"must be from 0 to 1, is {cover:g}")
     if change_over is not None:
         check_change_over(change_over)
-    options = options_of(search)
+    options, progress = options_of(search), search.get("progress")
     poses = _poses(at)
     given = [scene_or_file(one) for one in (scene, *others)]
     with extras_for("the front end"):
@@ -141,6 +135,43 @@ def setups(
     found = candidates_of(scenes, poses, building, progress, by_hand=by_hand)
     answer = plan_of(found, cover, change_over, options, progress)
     return ChosenSetUps(answer, tuple(found.scenes[one.number - 1] for one in answer.set_ups))
+
+
+@dataclass(frozen=True)
+class _Placed(Value):
+    """What a row of ``place`` says of where the part stands."""
+
+    position_m: tuple[float, float, float]
+    rpy_rad: tuple[float, float, float]
+
+
+def places_in(file: Path) -> list[Pose]:
+    """The placements of a file of JSON Lines that ``place`` has printed, without refused ones.
+
+    Raises:
+        InputError: a line is no placement of a part, or there is none; names file and line.
+    """
+    found: list[Pose] = []
+    for number, line in enumerate(read_text(file).splitlines(), 1):
+        try:
+            row = parse_json(line)
+            if row.get("moved") == "base":
+                raise InputError(None, None, "is a place of the arm's base, not of the part")
+            if not row.get("refused"):
+                members = {name: row.get(name) for name in _Placed.__dataclass_fields__}
+                placed = _Placed.from_document(members)
+                found.append((*placed.position_m, *placed.rpy_rad))
+        except InputError as error:
+            message = error.message
+            if error.field is not None:
+                message = (
+                    "must be an object with position_m and rpy_rad, three numbers each, as place "
+                    "--json prints it"
+                )
+            raise InputError(str(file), f"line {number}", message) from error
+    if not found:
+        raise InputError(str(file), None, "has no place where the part can stand")
+    return found
 
 
 def _poses(at: Sequence[Sequence[float]] | Placements) -> list[Pose]:

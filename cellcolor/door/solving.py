@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from math import degrees
 from os import PathLike
@@ -15,7 +15,7 @@ from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.decomposition import decomposition_of
-from cellcolor.door.asked import SearchOfAPart, options_of, wanted_of
+from cellcolor.door.asked import SearchOfAPart, Work, begun, options_of, wanted_of
 from cellcolor.door.leaving_out import rest_of
 from cellcolor.door.result import GapStep, Result
 from cellcolor.door.subject import (
@@ -36,20 +36,14 @@ if TYPE_CHECKING:
 _BESIDE_SECONDS = 10.0  # there are many small cells, and the proof may take for ever
 
 
-def build(
-    scene: str | PathLike[str] | Scene,
-    *,
-    time_limit: TimeLimit = None,
-    progress: Callable[[str], None] | None = None,
-) -> BuildResult:
+def build(scene: str | PathLike[str] | Scene, **work: Unpack[Work]) -> BuildResult:
     """Compute which colors reach each point of a robot scene's object.
 
     Needs the extra ``frontend``.
 
     Args:
         scene: its file, its shipped name, or the value.
-        time_limit: seconds, None for no limit.
-        progress: told the name of each stage as it begins.
+        **work: :class:`~cellcolor.door.asked.Work`; told is the name of each stage as it begins.
 
     Returns:
         The labelled surface, and what became of every candidate on the way to it.
@@ -58,8 +52,7 @@ def build(
         InputError: the scene, its setup, a URDF or a mesh cannot be used; names file and field.
         OutOfTime: the time limit came first.
     """
-    deadline = Deadline.of(time_limit)
-    return build_scene(scene_or_file(scene), deadline, progress)
+    return build_scene(scene_or_file(scene), *begun(work))
 
 
 def decompose(source: Solvable, *, time_limit: TimeLimit = None) -> Instance:
@@ -131,9 +124,10 @@ def solve(
 
     solution = checked.solve(instance, options, solver, told)
     gap.append(GapStep(time.monotonic() - begun, solution.segments, solution.lower_bound))
-    solution = _with_minimum_modulo(_with_raw_minimum(solution, subject, options), subject, options)
-    notes = (*_tolerance_in_words(subject), *left_out)
-    solution = replace(solution, notes=(*notes, *solution.notes))
+    notes = [*_tolerance_in_words(subject), *left_out, *solution.notes]
+    notes += _raw_minimum(subject, options)
+    notes += _minimum_modulo(solution, subject, options)
+    solution = replace(solution, notes=tuple(notes))
     return Result(solution, subject, share, tuple(gap))
 
 
@@ -178,35 +172,28 @@ def _tolerance_in_words(subject: Subject) -> tuple[str, ...]:
     )
 
 
-def _with_raw_minimum(solution: Solution, subject: Subject, options: Options) -> Solution:
-    """The solution with a note on the whole surface, where a scene's slivers were given up."""
+def _raw_minimum(subject: Subject, options: Options) -> Iterator[str]:
+    """A note on the whole surface, where a scene's slivers were given up."""
     built = subject.built
-    raw = None if built is None else built.raw_surface
-    if built is None or raw is None:
-        return solution
-    areas = raw.vertex_areas
-    slivers = areas[built.slivers].sum() / areas.sum()
-    found = _solved_beside(raw, options)
-    note = f"{slivers:.1%} of the area was given up as slivers; with nothing given up: {found}"
-    return replace(solution, notes=(*solution.notes, note))
+    if built is not None and built.raw_surface is not None:
+        areas = built.raw_surface.vertex_areas
+        slivers = areas[built.slivers].sum() / areas.sum()
+        found = _solved_beside(built.raw_surface, options)
+        yield f"{slivers:.1%} of the area was given up as slivers; with nothing given up: {found}"
 
 
-def _with_minimum_modulo(solution: Solution, subject: Subject, options: Options) -> Solution:
-    """The solution with a note on the minimum without joint limits, where a color winds around.
+def _minimum_modulo(solution: Solution, subject: Subject, options: Options) -> Iterator[str]:
+    """A note on the minimum without joint limits, where a color winds around.
 
     Such a color is cut in a few places; wherever it is cut, that minimum is a lower bound.
     """
     modulo = None if subject.built is None else subject.built.modulo_surface
-    if modulo is None:
-        return solution
-    found = _solved_beside(modulo, options)
-    least = found.surface_lower_bound if isinstance(found, Solution) else 0
-    note = "Colors that wind around are cut where the joint limits are; "
-    if least == solution.segments:
-        note += "wherever they are cut, as many segments are needed."
-    else:
-        note += f"wherever they are cut, at least {least} are needed."
-    return replace(solution, notes=(*solution.notes, note))
+    if modulo is not None:
+        found = _solved_beside(modulo, options)
+        least = found.surface_lower_bound if isinstance(found, Solution) else 0
+        needed = "as many segments are" if least == solution.segments else f"at least {least} are"
+        note = "Colors that wind around are cut where the joint limits are; wherever they are cut, "
+        yield f"{note}{needed} needed."
 
 
 def _solved_beside(surface: LabelledSurface, options: Options) -> Solution | str:

@@ -14,13 +14,13 @@ from cellcolor.data.candidate_table import CandidateTable
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.value import read_one_of
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of, locate
 from cellcolor.decomposition.same_graph import wrong_cell
 from cellcolor.door.extras import extras_for
 from cellcolor.door.shipped import find_file
 from cellcolor.errors import InputError, naming
-from cellcolor.files.documents import read_document
 
 if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult, Scene
@@ -308,13 +308,5 @@ def read_graph(path: Path) -> Instance | LabelledSurface:
     if path.suffix.lower() in _MESHES and path.is_file():
         message = "is a mesh, which has no colors: cellcolor new makes a scene of it and an arm"
         raise InputError(str(path), None, message)
-    document = read_document(path)
-    with naming(path):
-        match document.get("format"):
-            case Instance.FORMAT:
-                return Instance.from_document(document)
-            case LabelledSurface.FORMAT:
-                return LabelledSurface.from_document(document)
-            case other:
-                expected = f"{Instance.FORMAT!r} or {LabelledSurface.FORMAT!r}"
-                raise InputError(None, "format", f"must be {expected}, is {other!r}")
+    found: Instance | LabelledSurface = read_one_of(path, (Instance, LabelledSurface))
+    return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from os import PathLike
 from typing import Any, TypeVar
 
@@ -187,7 +187,7 @@ def field_name(location: tuple[int | str, ...]) -> str:
     return text
 
 
-def dump_lines(document: dict[str, Any], one_per_line: frozenset[str]) -> str:
+def dump_lines(document: dict[str, Any], one_per_line: Collection[str]) -> str:
     """JSON text with a member a line, and the elements of some members a line each.
 
     That keeps instances and solutions readable and their differences small.

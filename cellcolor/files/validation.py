@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import re
+from abc import ABC, abstractmethod
 from dataclasses import fields
 from functools import cache
-from typing import Any, TypeVar, get_type_hints
+from types import NoneType
+from typing import Any, TypeVar, get_args, get_type_hints
 
 import numpy as np
 from pydantic import ConfigDict, TypeAdapter, ValidationError
@@ -20,8 +22,16 @@ T = TypeVar("T")
 _STRICT = ConfigDict(strict=True, allow_inf_nan=False)
 
 
-class LeftToNumpy:
-    """Annotates members that are arrays of numpy, which :func:`settle` leaves to it."""
+class LeftToNumpy(ABC):
+    """Annotates members that are arrays of numpy, which :func:`settle` has made by it."""
+
+    @abstractmethod
+    def of(self, content: Any, member: str) -> Any:
+        """The array of what was given for a member.
+
+        Raises:
+            InputError: it cannot be made of that.
+        """
 
 
 def settle(value: object) -> None:
@@ -35,7 +45,7 @@ def settle(value: object) -> None:
         InputError: a member is not what its annotation says.
     """
     kind: Any = type(value)
-    names, adapter = _members(kind)
+    names, adapter, arrays = _members(kind)
     given = tuple([getattr(value, name) for name in names])
     try:
         settled = _settled(adapter, given)
@@ -45,10 +55,14 @@ def settle(value: object) -> None:
     for name, before, content in zip(names, given, settled, strict=True):
         if content is not before:
             object.__setattr__(value, name, content)
+    for name, array, optional in arrays:
+        content = getattr(value, name)
+        if content is not None or not optional:
+            object.__setattr__(value, name, array.of(content, name))
 
 
-def _settled(adapter: TypeAdapter[tuple[Any, ...]], given: tuple[Any, ...]) -> tuple[Any, ...]:
-    """The members as they are if they can be, which they can wherever they came from JSON."""
+def _settled(adapter: TypeAdapter[T], given: Any) -> T:
+    """The content as they are if they can be, which they can wherever they came from JSON."""
     try:
         return adapter.validate_python(given)
     except ValidationError:
@@ -58,7 +72,7 @@ def _settled(adapter: TypeAdapter[tuple[Any, ...]], given: tuple[Any, ...]) -> t
 def validate_python(adapter: TypeAdapter[T], content: Any, member: str) -> T:
     """Hold the content of a member against a schema; the first fault becomes the error."""
     try:
-        return adapter.validate_python(content)
+        return _settled(adapter, content)
     except ValidationError as error:
         place, message = _first_fault(error)
         raise InputError(None, field_name((member, *place)), message) from error
@@ -94,18 +108,24 @@ def json_content(content: Any, member: str) -> Any:
 
 
 @cache
-def _members(kind: Any) -> tuple[list[str], TypeAdapter[tuple[Any, ...]]]:
-    """The names of a dataclass's members, and the schema of their values as one tuple."""
+def _members(
+    kind: Any,
+) -> tuple[list[str], TypeAdapter[tuple[Any, ...]], list[tuple[str, LeftToNumpy, bool]]]:
+    """The names of a dataclass's members, the schema of their values as one tuple; and the names
+    of those that are arrays, with what makes them and whether they may be None."""
     hints = get_type_hints(kind, include_extras=True)
-    names = [
-        field.name
-        for field in fields(kind)
-        if not any(
-            isinstance(part, LeftToNumpy) for part in getattr(hints[field.name], "__metadata__", ())
-        )
-    ]
+    names, arrays = [], []
+    for member in fields(kind):
+        hint = hints[member.name]
+        optional = NoneType in get_args(hint)
+        own = get_args(hint)[0] if optional else hint
+        marks = [mark for mark in getattr(own, "__metadata__", ()) if isinstance(mark, LeftToNumpy)]
+        if marks:
+            arrays.append((member.name, marks[0], optional))
+        else:
+            names.append(member.name)
     types = tuple(_without_alias(hints[name]) for name in names)
-    return names, TypeAdapter(tuple[types], config=_STRICT)  # type: ignore[valid-type]
+    return names, TypeAdapter(tuple[types], config=_STRICT), arrays  # type: ignore[valid-type]
 
 
 def _without_alias(hint: Any) -> Any:

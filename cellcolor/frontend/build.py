@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib.metadata
 from dataclasses import asdict, dataclass, replace
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array, Mask
 from cellcolor.data.candidate_table import CandidateTable
 from cellcolor.data.surface import Crack, LabelledSurface
-from cellcolor.data.value import same_members
+from cellcolor.data.value import Drawn, same_members
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import naming
@@ -30,9 +30,6 @@ from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.frontend.stages import Stages, judged
 from cellcolor.version import __version__
 
-if TYPE_CHECKING:
-    import cellcolor
-
 Cracks = tuple[Crack, ...]
 
 _INJECTIVE = (
@@ -42,7 +39,7 @@ _INJECTIVE = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class BuildResult:
+class BuildResult(Drawn):
     """A labelled surface and everything found on the way to it.
 
     Attributes:
@@ -205,12 +202,6 @@ class BuildResult:
         )
 
     __hash__ = None  # type: ignore[assignment]  # arrays that can be changed
-
-    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
-        """Draw it; see ``cellcolor.show`` for the options in ``view``."""
-        import cellcolor  # the whole package's face, which only somebody who looks at it needs
-
-        return cellcolor.show(self, path, **view)
 
     def __str__(self) -> str:
         return f"{self.surface}\n{self.report}"

@@ -19,7 +19,8 @@ from cellcolor.data.wording import count
 from cellcolor.frontend.arm.kinematics import frames_along
 from cellcolor.frontend.contact.fcl_bodies import mesh_model
 from cellcolor.frontend.contact.stand_in_report import StandInReport
-from cellcolor.frontend.parts.surface import Faces, Surface
+from cellcolor.frontend.parts.sides import spread
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.reach.slivers import SliverReport
@@ -249,7 +250,7 @@ def survey(surface: Surface, viewpoints: Array) -> Survey:
 def _from_behind(mesh: TriangleMesh, viewpoints: Array) -> float:
     """The share of the visible points that are seen only from behind."""
     vertices, faces = mesh.points, mesh.corners
-    points, face = _spread(mesh)
+    points, face = spread(mesh, _POINTS)
     shape = fcl.CollisionObject(mesh_model(vertices, faces), fcl.Transform())
     normals = mesh.area_vectors[face]
     seen, front = np.zeros((2, len(points)), dtype=bool)
@@ -258,17 +259,6 @@ def _from_behind(mesh: TriangleMesh, viewpoints: Array) -> float:
         seen |= visible
         front |= visible & (np.einsum("ij,ij->i", normals, eye - points) > 0)
     return float((seen & ~front).sum() / max(seen.sum(), 1))
-
-
-def _spread(mesh: TriangleMesh) -> tuple[Array, Faces]:
-    """Points (k, 3) all over the surface, each for as much area, and the face (k,) of each."""
-    corners, areas = mesh.points[mesh.corners], mesh.areas
-    wanted = (np.arange(_POINTS) + 0.5) / _POINTS * areas.sum()
-    face = np.minimum(np.searchsorted(np.cumsum(areas), wanted), len(areas) - 1)
-    u, v = np.random.default_rng(0).random((2, _POINTS))
-    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
-    weights = np.stack([1 - u - v, u, v], axis=1)
-    return np.einsum("ij,ijk->ik", weights, corners[face]), face
 
 
 def _visible(shape: fcl.CollisionObject, eye: Array, points: Array) -> Mask:

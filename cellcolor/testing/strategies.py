@@ -6,8 +6,10 @@ For property tests of planners and solvers; needs the package ``hypothesis``.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypeVar
 
 import numpy as np
+from hypothesis import note
 from hypothesis import strategies as st
 
 from cellcolor.data.instance import Instance
@@ -17,6 +19,7 @@ from cellcolor.lab.families import planar_graph
 from cellcolor.lab.families.meshes import grid_faces
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
+_Value = TypeVar("_Value")
 _SEEDS = st.integers(0, 2**31 - 1)
 
 
@@ -88,13 +91,22 @@ def labelled_surfaces(
     """
     sides, places = st.integers(2, largest), st.integers(0, largest - 1)
     rectangles = st.lists(st.tuples(places, places, places, places), min_size=1, max_size=3)
-    return st.builds(
+    found = st.builds(
         sheet,
         sides,
         sides,
         st.lists(rectangles, min_size=1, max_size=most_colors),
         st.lists(st.tuples(places, places, places), max_size=2),
     )
+    return _with_import(found, f"from {__name__} import sheet")
+
+
+@st.composite
+def _with_import(draw: st.DrawFn, values: st.SearchStrategy[_Value], line: str) -> _Value:
+    """The same values; of one that fails, the line that its call needs is printed as well."""
+    value = draw(values)
+    note(line)
+    return value
 
 
 def instances(most_cells: int = 10, most_colors: int = 5) -> st.SearchStrategy[Instance]:
@@ -104,7 +116,7 @@ def instances(most_cells: int = 10, most_colors: int = 5) -> st.SearchStrategy[I
         most_cells: cells, 1 or more.
         most_colors: colors, 1 or more.
     """
-    return st.integers(1, most_cells).flatmap(
+    found = st.integers(1, most_cells).flatmap(
         lambda cells: st.builds(
             planar_graph,
             seed=_SEEDS,
@@ -113,6 +125,7 @@ def instances(most_cells: int = 10, most_colors: int = 5) -> st.SearchStrategy[I
             colors=st.integers(1, most_colors),
         )
     )
+    return _with_import(found, f"from {planar_graph.__module__} import planar_graph")
 
 
 def valid_plans(surface: LabelledSurface) -> st.SearchStrategy[Plan]:

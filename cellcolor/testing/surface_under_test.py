@@ -20,19 +20,20 @@ _SHOWN = 3  # problems of a plan that is not valid
 
 
 def surfaces_under_test(
-    time_limit: float, folder: Path | None
+    time_limit: float, folder: Path | None, record: Callable[[str, str], None]
 ) -> Callable[[Solvable], SurfaceUnderTest]:
     """What opens surfaces for tests.
 
     Args:
         time_limit: seconds for each proof.
         folder: where proofs and pictures are kept; None keeps neither.
+        record: takes the name of a surface and a verdict on it, in one line.
     """
 
     def open_surface(source: Solvable) -> SurfaceUnderTest:
         __tracebackhide__ = True
         try:
-            return SurfaceUnderTest(source, time_limit, folder)
+            return SurfaceUnderTest(source, time_limit, folder, record)
         except InputError as error:
             raise _shortened(error) from None
         except OutOfTime:
@@ -49,19 +50,26 @@ class SurfaceUnderTest:
         surface: the labelled surface.
     """
 
-    def __init__(self, source: Solvable, time_limit: float, folder: Path | None) -> None:
+    def __init__(
+        self,
+        source: Solvable,
+        time_limit: float,
+        folder: Path | None,
+        record: Callable[[str, str], None],
+    ) -> None:
         """Open the surface; nothing is proved yet.
 
         Args:
             source: a labelled surface, a scene, or an instance that names its surface.
             time_limit: seconds for the proof.
             folder: where proofs and pictures are kept; None keeps neither.
+            record: takes the name of a surface and a verdict on it, in one line.
 
         Raises:
             InputError: the source cannot be used, or has no surface.
         """
         self._oracle = KeepingOracle(source, time_limit, folder)
-        self._folder = folder
+        self._folder, self._record = folder, record
         self.surface: LabelledSurface = self._oracle.surface
 
     @property
@@ -81,9 +89,11 @@ class SurfaceUnderTest:
         """
         __tracebackhide__ = True
         try:
-            return self._oracle.judge(plan)
+            verdict = self._oracle.judge(plan)
         except InputError as error:
             raise _shortened(error) from None
+        self._record(self.surface.name, str(verdict))
+        return verdict
 
     def assert_valid(self, plan: AnyPlan) -> Verdict:
         """Fail unless every reachable vertex has one of its colors, and no other vertex has one.
@@ -137,7 +147,7 @@ class SurfaceUnderTest:
     def _pictures(self, verdict: Verdict, test: str) -> list[str]:
         """Draw the plan, and a better one; where they are, or why not, a line each."""
         if self._folder is None:
-            return ["no picture: it would be in pytest's cache, which is switched off"]
+            return ["no picture: pytest's cache is switched off (--cellcolor-cache DIR keeps it)"]
         if verdict.plan is None:
             return ["no picture: a solution was judged"]
         folder = self._folder / "pictures"

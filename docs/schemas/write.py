@@ -76,7 +76,7 @@ FORMATS = {
     "solution-3": Format(3, solution.Solution),
     "scheme-3": Format(None, schemes.SchemeLine),
     "plan-1": Format(1, plan.Plan),
-    "tool-paths-1": Format(1, tool_paths.ToolPaths, tool_paths._ToolPathsFile),
+    "tool-paths-1": Format(1, tool_paths.ToolPaths),
     "solution-verdict-1": Format(1, verdicts.SolutionVerdict),
     "plan-verdict-1": Format(1, verdicts.PlanVerdict),
     "check-error-1": Format(1, verdicts.CheckError),

@@ -13,7 +13,6 @@ from documents import SURFACE
 from library import INSTANCES, PAPER
 
 import cellcolor.cli.checking
-from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
@@ -84,26 +83,6 @@ class TestCheck:
         change(documents[line])
         path.write_text("".join(json.dumps(d) + "\n" for d in documents), encoding="utf-8")
 
-    def test_valid(self, solved: Path, capsys: Capture) -> None:
-        capsys.readouterr()
-        assert run("check", ZEROS, solved, "--json") == 0
-        (line,) = json_lines(capsys.readouterr().out)
-        assert line["valid"] is True
-        assert (line["segments"], line["lift_offs"], line["schemes"]) == (2, 1, 3)
-
-    def test_one_is_no_plural(self, tmp_path: Path, capsys: Capture) -> None:
-        """Two cells in two colors that share none: one scheme with 2 segments, 1 lift-off."""
-        apart = tmp_path / "apart.json"
-        cells = (Cell(0, (0,), ((1,),)), Cell(1, (1,), ((-1,),)))
-        apart.write_text(Instance("apart", ("red", "blue"), cells, (Edge(1, 0, 1),)).to_json())
-        solution = tmp_path / "all.jsonl"
-        assert run("solve", apart, "--all", "-o", solution) == 0
-        assert "2 cells, 1 edge, 2 colors" in capsys.readouterr().out
-        assert run("check", apart, solution) == 0
-        lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
-        assert "2 segments, 1 lift-off" in lines
-        assert "1 scheme" in lines
-
     def test_wrong_number(self, solved: Path, capsys: Capture) -> None:
         self.change(solved, 0, lambda d: d.update(segments=1, lift_offs=0))
         assert run("check", ZEROS, solved) == 1
@@ -169,15 +148,6 @@ class TestCheck:
         verdict = json_lines(capsys.readouterr().out)[0]
         # Nothing was proved, but the plan itself shows what is enough.
         assert (verdict["lower_bound"], verdict["upper_bound"]) == (1, verdict["segments"])
-
-    def test_no_time_to_build_a_scene(self, tmp_path: Path, capsys: Capture) -> None:
-        plan = tmp_path / "plan.json"
-        plan.write_text(Plan((0,)).to_json())
-        scene = INSTANCES / "scenes" / "square.toml"
-        assert run("check", scene, plan, "--time-limit", "1e-6", "--json") == 3
-        out, err = capsys.readouterr()
-        assert "the time limit came before there was a surface; see --time-limit" in err
-        assert "the time limit" in json_lines(out)[0]["error"]
 
 
 def test_a_plan_is_not_checked_against_a_graph_alone(tmp_path: Path, capsys: Capture) -> None:

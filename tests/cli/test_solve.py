@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -33,15 +32,15 @@ import cellcolor.cli, cellcolor.cli.solving
 sent = threading.Event()
 
 @contextlib.contextmanager
-def watched(_file):
-    def report(segments, _bound):
+def watched(_file, _work):
+    def report(text):
         searching = "dfs" in sys.argv or threading.current_thread() is not threading.main_thread()
-        if segments is not None and searching and not sent.is_set():
+        if text.startswith("best") and searching and not sent.is_set():
             sent.set()
             signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
     yield report
 
-cellcolor.cli.solving.progress_of = watched
+cellcolor.cli.solving.line_of = watched
 code = cellcolor.cli.main(sys.argv[1:])
 sys.exit(code if sent.is_set() else 99)
 """
@@ -52,10 +51,8 @@ class TestSolve:
         assert run("solve", ZEROS) == 0
         out, err = capsys.readouterr()
         assert err == ""
-        rows = [line.split() for line in out.splitlines()]
-        assert ["segments", "2"] in rows
-        assert ["lift-offs", "1"] in rows
-        assert any(row[:2] == ["status", "optimal"] for row in rows)
+        assert "\n2 segments, 1 lift-off, optimal: proved for any division of the surface" in out
+        assert " s with cp-sat, search space paper\n" in out
         assert "\x1b" not in out
         assert "part of 0" in out
 
@@ -65,26 +62,13 @@ class TestSolve:
         cells = tuple(Cell(number, (0,), ()) for number in range(250))
         path.write_text(Instance("apart", ("red",), cells, ()).to_json(), encoding="utf-8")
         assert run("solve", path) == 0
-        rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+        out = capsys.readouterr().out
+        rows = [line.split() for line in out.splitlines()]
         assert [row[:3] for row in rows if "red" in row] == [
             [str(number), "red", str(number)] for number in range(200)
         ]
         assert ["…", "50", "more", "segments"] in rows
-        assert ["segments", "250"] in rows
-
-    def test_share_of_area(self, tmp_path: Path, capsys: Capture) -> None:
-        """Four neighbours of 1 m² and a divided cell of 4 m²: nobody knows whose its area is."""
-        instance = Instance.read(PAPER / "figsimpleexample.json")
-        cells = [replace(cell, area=1.0 if cell.id else 4.0) for cell in instance.cells]
-        path = tmp_path / "areas.json"
-        path.write_text(replace(instance, cells=tuple(cells)).to_json(), encoding="utf-8")
-        assert run("solve", path) == 0
-        out = capsys.readouterr().out
-        assert "share of area" in out
-        assert out.count("25.0–75.0 %") == 2
-        assert "the cut through a divided cell may run anywhere" in out
-        assert run("solve", RING) == 0  # nothing is divided there
-        assert "the cut through" not in capsys.readouterr().out
+        assert "\n250 segments, 249 lift-offs, " in out
 
     def test_json_is_all_there_is(self, capsys: Capture) -> None:
         assert run("solve", RING, CORRIDORS, "--json") == 0
@@ -96,24 +80,12 @@ class TestSolve:
         first.pop("file")
         assert Solution.from_document(first).status == "optimal"
 
-    def test_search_space_surface(self, capsys: Capture) -> None:
-        assert run("solve", CORRIDORS, "--search-space", "surface", "--json") == 0
-        (line,) = json_lines(capsys.readouterr().out)
-        assert (line["search_space"], line["strands"], line["segments"]) == ("surface", 2, 2)
-        assert line["proved_for_surface"] is True
-
     def test_one_strand_is_the_paper(self, capsys: Capture) -> None:
         """Not proved for the surface, though nothing better exists with one strand: exit code 3."""
         code = run("solve", CORRIDORS, "--search-space", "surface", "--strands", 1, "--json")
         assert code == 3
         (line,) = json_lines(capsys.readouterr().out)
         assert (line["segments"], line["status"], line["surface_lower_bound"]) == (3, "feasible", 2)
-
-    @pytest.mark.parametrize("solver", ["cp-sat", "dfs"])
-    def test_solvers(self, solver: str, capsys: Capture) -> None:
-        assert run("solve", ZEROS, "--solver", solver, "--json") == 0
-        (line,) = json_lines(capsys.readouterr().out)
-        assert (line["solver"], line["segments"]) == (solver, 2)
 
     def test_surface_like_its_instance(self, tmp_path: Path, capsys: Capture) -> None:
         """What build writes beside a surface is what solve makes of that surface."""

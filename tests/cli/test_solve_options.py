@@ -62,4 +62,6 @@ class TestMore:
 
     def test_what_proves_a_minimum_of_the_search_space(self, capsys: Capture) -> None:
         assert run("solve", CORRIDORS, "--solver", "dfs") == 0
-        assert "proved by exhaustive search" in " ".join(capsys.readouterr().out.split())
+        assert "optimal in the search space paper, by exhaustive search" in " ".join(
+            capsys.readouterr().out.split()
+        )

@@ -199,6 +199,12 @@ SURFACE_FAULTS = {
     "two coordinates": (put("vertices", 1, to=[1, 0]), "vertices[1][2]", ""),
     "NaN coordinate": (put("vertices", 1, 2, to=float("nan")), "vertices[1][2]", "finite"),
     "infinite coordinate": (put("vertices", 1, 2, to=float("inf")), "vertices[1][2]", "finite"),
+    "coordinate beyond everything": (
+        put("vertices", 2, 1, to=-1e308),
+        "vertices[2][1]",
+        "beyond 1e+09 m",
+    ),
+    "two colors of one name": (put("colors", to=["a", "a"]), "colors[1]", "the name of color 0"),
     "coordinate as text": (put("vertices", 1, 2, to="0"), "vertices[1][2]", "number"),
     "fractional vertex": (put("faces", 0, 0, to=0.5), "faces[0][0]", "integer"),
     "color out of range": (put("vertex_colors", 2, to=[2]), "vertex_colors[2]", "unknown color 2"),
@@ -252,6 +258,7 @@ INSTANCE_FAULTS = {
     "edge id zero": (put("edges", 1, "id", to=0), "edges[1].id", "positive"),
     "cell ids out of order": (put("cells", 1, "id", to=2), "cells[1].id", "0, 1, 2"),
     "empty color set": (put("cells", 0, "colors", to=[]), "cells[0].colors", "no color"),
+    "two colors of one name": (put("colors", to=["a", "a"]), "colors[1]", "the name of color 0"),
     "unknown color": (put("cells", 0, "colors", to=[5]), "cells[0].colors", "unknown color 5"),
     "color twice": (put("cells", 1, "colors", to=[0, 0]), "cells[1].colors", "twice"),
     "joinable color not shared": (

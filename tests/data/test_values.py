@@ -6,7 +6,7 @@ import copy
 import json
 import pickle
 import re
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import ModelSize, Solution
 from cellcolor.data.surface import Crack, LabelledSurface
-from cellcolor.data.value import integers, numbers, rows_of, rows_of_three, truths
+from cellcolor.data.value import Integers, Numbers, RowsOfThree, Truths, Value
 from cellcolor.errors import BeatenBound, InputError
 from cellcolor.oracle import ProvenRange, Verdict
 from examples import examples
@@ -291,41 +291,56 @@ def test_paths_are_texts_or_paths(tmp_path: Path) -> None:
         Instance.read(5)  # type: ignore[arg-type]
 
 
+@dataclass(frozen=True, eq=False)
+class Arrays(Value):
+    rows: RowsOfThree
+    numbers: Numbers
+    integers: Integers
+    truths: Truths
+
+
+WHOLE: dict[str, Any] = {
+    "rows": [[1, 2, 3]],
+    "numbers": [1, 2.5],
+    "integers": [1],
+    "truths": [True],
+}
+
+
 def test_lists_and_arrays_become_copies_of_one_kind() -> None:
     given = np.array([[1, 2, 3]])
-    rows = rows_of_three(given, "m")
+    made = Arrays(**WHOLE | {"rows": given})
     given[:] = 0
-    assert rows.dtype == np.float64 and rows.tolist() == [[1.0, 2.0, 3.0]]
-    assert rows_of([[1, 2]], 2, "m").shape == (1, 2)
-    assert numbers([1, 2.5], "m").tolist() == [1.0, 2.5]
-    assert integers((1, 2), "m").dtype == np.int64
-    assert truths([True, False], "m").dtype == np.bool_
-    for array in (rows, numbers([1.0], "m"), integers([1], "m"), truths([True], "m")):
-        assert not array.flags.writeable
+    arrays = [made.rows, made.numbers, made.integers, made.truths]
+    assert [array.tolist() for array in arrays] == list(WHOLE.values())
+    assert [array.dtype for array in arrays] == [float, float, int, bool]
+    assert not any(array.flags.writeable for array in arrays)
 
 
 def test_nothing_has_the_right_shape() -> None:
-    assert rows_of_three([], "m").shape == (0, 3)
-    assert rows_of([], 6, "m").shape == (0, 6)
-    assert len(numbers([], "m")) == len(integers([], "m")) == len(truths([], "m")) == 0
+    none = Arrays(*[[]] * 4)  # type: ignore[arg-type]
+    assert none.rows.shape == (0, 3)
+    assert len(none.numbers) == len(none.integers) == len(none.truths) == 0
 
 
-BAD: list[tuple[Any, Any, str]] = [
-    (rows_of_three, [[1, 2]], "m: each entry needs 3 numbers"),
-    (rows_of_three, [1, 2, 3], "m: each entry needs 3 numbers"),
-    (rows_of_three, [[1, 2, 3], [1, 2]], "m: must be rows of numbers of one length"),
-    (rows_of_three, [[1, 2, float("nan")]], r"m\[0\]\[2\]: is not a finite number"),
-    (rows_of_three, [["a", "b", "c"]], "m: must be numbers"),
-    (rows_of_three, [[True, True, True]], "m: must be numbers"),
-    (numbers, [[1.0]], "m: must be one row"),
-    (numbers, [0.0, float("inf")], r"m\[1\]: is not a finite number"),
-    (integers, [1.0], "m: must be integers"),
-    (integers, [True], "m: must be integers"),
-    (truths, [1], "m: must be true or false"),
-]
-
-
-@pytest.mark.parametrize(("make", "content", "complaint"), BAD)
-def test_anything_else_is_refused_by_name(make: Any, content: Any, complaint: str) -> None:
+@pytest.mark.parametrize(
+    ("member", "content", "complaint"),
+    [
+        ("rows", [[1, 2]], r"rows\[0\]\[2\]: is missing"),
+        ("rows", np.ones((1, 2)), "rows: each entry needs 3 numbers"),
+        ("rows", np.ones(3), "rows: must be rows"),
+        ("rows", [[1, 2, 3], [1, 2]], r"rows\[1\]\[2\]: is missing"),
+        ("rows", [[1, 2, float("nan")]], r"rows\[0\]\[2\]: is not a finite number"),
+        ("rows", [["a", "b", "c"]], r"rows\[0\]\[0\]: .* a valid number"),
+        ("rows", np.array([["a", "b", "c"]]), "rows: must be numbers"),
+        ("rows", [[True, True, True]], r"rows\[0\]\[0\]: .* a valid number"),
+        ("numbers", np.ones((1, 1)), "numbers: must be one row"),
+        ("numbers", [0.0, float("inf")], r"numbers\[1\]: is not a finite number"),
+        ("integers", [1.0], r"integers\[0\]: .* a valid integer"),
+        ("integers", np.ones(1), "integers: must be integers"),
+        ("truths", [1], r"truths\[0\]: .* a valid boolean"),
+    ],
+)
+def test_anything_else_is_refused_by_name(member: str, content: Any, complaint: str) -> None:
     with pytest.raises(InputError, match=complaint):
-        make(content, "m")
+        Arrays(**WHOLE | {member: content})

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
-from documents import Document
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
@@ -21,7 +19,6 @@ import cellcolor.door.oracle
 import cellcolor.oracle.ranges
 import cellcolor.solvers.checked
 from cellcolor import judge, proven_range
-from cellcolor.checker.vertex_plan import PlanReport
 from cellcolor.cli import main
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
@@ -30,7 +27,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition
 from cellcolor.errors import BeatenBound, InputError
-from cellcolor.oracle import Proof, ProvenRange, Verdict
+from cellcolor.oracle import ProvenRange, Verdict
 from cellcolor.solvers.interface import Options
 from examples import examples
 
@@ -80,14 +77,6 @@ def test_the_papers_search_space_is_not_the_measure() -> None:
     assert (verdict.segments, verdict.lift_offs, verdict.optimal) == (2, 1, True)
     assert verdict.bounds == ProvenRange(2, 2)
     assert verdict.bounds.exact
-
-
-def test_plan_that_can_be_beaten() -> None:
-    row = drawn("AAMMBB AAMMBB AAMMBB", {"A": [RED], "M": [RED, BLUE], "B": [RED]})
-    best = judge(row, Plan((RED,) * 18))
-    assert (best.segments, best.lift_offs, best.optimal, best.beatable_by) == (1, 0, True, 0)
-    worse = judge(row, Plan((RED, RED, BLUE, BLUE, RED, RED) * 3))
-    assert (worse.segments, worse.optimal, worse.beatable_by) == (3, False, 2)
 
 
 def test_cracks_count() -> None:
@@ -178,46 +167,10 @@ def test_no_second_search_for_which_there_is_no_time(
     assert searches == expected
 
 
-def test_checking_the_plan_counts(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The plan is checked in 2 s of 60."""
-    clock, limits = _Clock(), list[float]()
-    monkeypatch.setattr(time, "monotonic", clock)
-
-    def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
-        clock.now += 2
-        return cellcolor.checker.vertex_plan.check_plan(surface, plan)
-
-    def prove(_: LabelledSurface, deadline: Deadline, **_options: object) -> Proof:
-        limits.append(deadline.left)
-        return Proof(ProvenRange(1, 8))
-
-    monkeypatch.setattr(cellcolor.door.oracle, "check_plan", check_plan)
-    monkeypatch.setattr(cellcolor.door.oracle, "prove", prove)
-    judge(drawn("AA AA", {"A": [RED]}), Plan((RED,) * 4), time_limit=60.0)
-    assert limits == [58.0]
-
-
 def test_nothing_reachable() -> None:
     surface = drawn("... ...", {".": []})
     verdict = judge(surface, Plan((None,) * 6))
     assert (verdict.segments, verdict.lift_offs, verdict.optimal) == (0, 0, True)
-
-
-def test_invalid_plans() -> None:
-    surface = drawn("AB. AB.", {"A": [RED], "B": [RED, BLUE], ".": []})
-    assert judge(surface, Plan((RED, BLUE, None) * 2)).valid
-    faults = {
-        (GREEN, RED, None, RED, RED, None): "vertex_colors[0]",
-        (RED, RED, None, RED, None, None): "vertex_colors[4]",
-        (RED, RED, None, RED, RED, RED): "vertex_colors[5]",
-        (RED, RED, None): "vertex_colors",
-    }
-    for colors, place in faults.items():
-        verdict = judge(surface, Plan(colors))
-        assert not verdict.valid
-        assert (verdict.segments, verdict.lift_offs, verdict.optimal) == (None, None, None)
-        (problem,) = verdict.problems
-        assert problem.startswith(f"{place}: ")
 
 
 def test_contradiction_is_an_error() -> None:
@@ -241,48 +194,12 @@ def test_no_plan_beats_the_lower_bound(surface: LabelledSurface, data: st.DataOb
     )
 
 
-class TestCommand:
-    def check(self, surface: Path, plan: Plan, folder: Path, *options: str) -> int:
-        path = folder / "plan.json"
-        path.write_text(plan.to_json(), encoding="utf-8")
-        return main(["check", str(surface), str(path), *options])
-
-    def test_valid(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-        plan = halves(LabelledSurface.read(CORRIDORS))
-        assert self.check(CORRIDORS, plan, tmp_path) == 0
-        out = capsys.readouterr().out
-        assert "2 segments, 1 lift-off\n" in out
-        assert "exactly 2" in out
-        assert "  optimal, because " in out
-
-    def test_json(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-        plan = halves(LabelledSurface.read(CORRIDORS))
-        assert self.check(CORRIDORS, plan, tmp_path, "--json") == 0
-        (line,) = capsys.readouterr().out.splitlines()
-        document: Document = json.loads(line)
-        # What was printed before verdicts had a format stays where it was.
-        before = {
-            "file": str(tmp_path / "plan.json"),
-            "valid": True,
-            "problems": [],
-            "segments": 2,
-            "lift_offs": 1,
-            "lower_bound": 2,
-            "upper_bound": 2,
-            "optimal": True,
-            "beatable_by": 0,
-        }
-        assert {name: document[name] for name in before} == before
-
-    def test_not_valid(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-        colors = list(halves(LabelledSurface.read(CORRIDORS)).vertex_colors)
-        colors[3] = None
-        assert self.check(CORRIDORS, Plan(tuple(colors)), tmp_path) == 1
-        out = capsys.readouterr().out
-        assert "not valid" in out
-        assert "vertex_colors[3]: null" in out
-        assert self.check(CORRIDORS, Plan(tuple(colors)), tmp_path, "--json") == 1
-        assert json.loads(capsys.readouterr().out)["valid"] is False
+def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """What it prints; its JSON is in tests/cli/test_check_json.py."""
+    (tmp_path / "plan.json").write_text(halves(LabelledSurface.read(CORRIDORS)).to_json())
+    assert main(["check", str(CORRIDORS), str(tmp_path / "plan.json")]) == 0
+    out = capsys.readouterr().out
+    assert "  2 segments, 1 lift-off, optimal: no division of the surface has fewer, because" in out
 
 
 @pytest.mark.parametrize("ends", [(7, 5), (-1, 2), (1.0, 2), (True, 2)])

@@ -66,7 +66,7 @@ def test_the_share_is_of_what_is_not_left_alone() -> None:
     of = {number: areas[color == number].sum() for number in range(3)}
     half = cellcolor.solve(STRIP, cover=0.5)
     assert (half.lift_offs, half.covered_share) == (0, pytest.approx(of[1] / sum(of.values())))
-    assert "50.0% is asked for" in half.solution.notes[0]
+    assert "50.0 % of what can be covered is asked for" in half.solution.notes[0]
     needed = cellcolor.solve(STRIP, cover=0.0, required=C_ONLY)
     assert needed.covered_share == pytest.approx(of[2] / sum(of.values()))
     rest = cellcolor.solve(STRIP, left_alone=C_ONLY)

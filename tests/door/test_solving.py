@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import html.parser
-import json
+import html
 import pickle
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import meshes
 import numpy as np
 import pytest
 from documents import PLAN, SOLUTION
@@ -65,10 +66,10 @@ def test_read_takes_every_format(tmp_path: Path) -> None:
         file.write_text(value.to_json(), encoding="utf-8")
         assert cellcolor.read(file) == value
     file.write_text('{"format": "cellcolor/other"}', encoding="utf-8")
-    with pytest.raises(InputError, match=r"file\.json: format: must be one of .*cellcolor/plan"):
+    with pytest.raises(InputError, match=r"file\.json: format: must be .*cellcolor/plan"):
         cellcolor.read(file)
     file.write_text('{"format": ["cellcolor/plan"]}', encoding="utf-8")
-    with pytest.raises(InputError, match=r"file\.json: format: must be one of"):
+    with pytest.raises(InputError, match=r"file\.json: format: must be "):
         cellcolor.read(file)
     file.write_text("[]", encoding="utf-8")
     with pytest.raises(InputError, match=r"file\.json: must be a JSON object"):
@@ -148,35 +149,16 @@ def _copy(file: Path, folder: Path) -> Path:
     return copy
 
 
-class _Cells(html.parser.HTMLParser):
-    """The texts of a table's cells."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.inside = False
-        self.found: list[str] = []
-        self.feed(text)
-
-    def handle_starttag(self, tag: str, _attributes: object) -> None:
-        self.inside = tag in ("td", "th")
-
-    def handle_endtag(self, tag: str) -> None:
-        self.inside = self.inside and tag not in ("td", "th")
-
-    def handle_data(self, data: str) -> None:
-        if self.inside:
-            self.found.append(data)
-
-
 def test_a_notebook_shows_a_table_and_a_picture() -> None:
     named = replace(HALVES, colors=("<red>", "blue & green"))
     page = cellcolor.solve(named)._repr_html_()
     assert "proved for any division" in page
-    cells = _Cells(page.partition("<iframe")[0]).found
+    table = page.partition("<iframe")[0]
+    cells = [html.unescape(cell) for cell in re.findall("<t[hd]>(.*?)</t[hd]>", table)]
     assert cells[:4] == ["segment", "color", "cells", "share of surface"]
     assert {cells[5], cells[9]} == {"<red>", "blue & green"}
     assert {cells[6], cells[10]} == {"0", "1"}
-    assert page.count("<iframe srcdoc=") == 1 and "src=" not in page.partition("<iframe")[0]
+    assert page.count("<iframe srcdoc=") == 1 and "src=" not in table
 
 
 def test_a_notebook_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -223,13 +205,6 @@ def test_what_cannot_be_solved_is_refused(source: Any) -> None:
             function(source)
 
 
-def test_a_plan_or_a_solution_cannot_be_solved(tmp_path: Path) -> None:
-    file = tmp_path / "plan.json"
-    file.write_text(json.dumps(PLAN), encoding="utf-8")
-    with pytest.raises(InputError, match=r"plan\.json: format: must be 'cellcolor/instance' or"):
-        cellcolor.solve(file)
-
-
 def test_options_reach_the_solver() -> None:
     found = cellcolor.solve("parallel-corridors", search_space="surface", strands=3, seed=4)
     assert (found.solution.strands, found.segments) == (3, 2)
@@ -257,14 +232,6 @@ def test_check_finds_what_is_wrong() -> None:
     assert not cellcolor.check("split-cell", found).valid
 
 
-def test_check_heeds_what_is_known() -> None:
-    instance = Instance.read(RING)
-    assert instance.known is not None and instance.known.paper is not None
-    wrong = replace(instance.known, paper=replace(instance.known.paper, segments=3))
-    report = cellcolor.check(replace(instance, known=wrong), cellcolor.solve(instance))
-    assert not report.valid and "known.paper.segments" in str(report)
-
-
 @given(surfaces())
 @examples(12)
 def test_a_plan_is_any_sequence_of_colors(surface: LabelledSurface) -> None:
@@ -278,24 +245,6 @@ def test_a_plan_is_any_sequence_of_colors(surface: LabelledSurface) -> None:
         assert cellcolor.judge(surface, plan, bounds=bounds) == verdict
     if None in colors:
         assert not cellcolor.judge(surface, bare.tolist(), bounds=bounds).valid
-
-
-def test_plans_are_judged_by_name_and_file(tmp_path: Path) -> None:
-    surface = LabelledSurface.read(RING_SURFACE)
-    plan = [next(iter(own), None) for own in surface.vertex_colors]
-    file = tmp_path / "plan.json"
-    file.write_text(Plan(tuple(plan)).to_json(), encoding="utf-8")
-    expected = cellcolor.judge(surface, plan)
-    assert cellcolor.judge("ring.surface.json", str(file)) == expected
-    assert cellcolor.judge(RING_SURFACE, file) == expected
-    with pytest.raises(InputError, match=r"ring\.json: surface: is missing"):
-        cellcolor.judge(RING, plan)
-
-
-@pytest.mark.parametrize("plan", [[1.5], ["mauve"], [True], 3, np.zeros((2, 2)), np.zeros(3), None])
-def test_what_is_no_plan_is_refused(plan: Any) -> None:
-    with pytest.raises(InputError, match="vertex_colors"):
-        cellcolor.judge(HALVES, plan)
 
 
 def test_the_proven_range_is_that_of_the_surface() -> None:
@@ -315,25 +264,12 @@ def test_decompose_gives_what_is_solved() -> None:
 
 def test_errors_name_the_file(tmp_path: Path) -> None:
     torus = tmp_path / "torus.surface.json"
-    torus.write_text(_torus().to_json(), encoding="utf-8")
-    for function in (cellcolor.solve, lambda s: cellcolor.judge(s, [0] * 16)):
+    points, faces = meshes.torus()
+    one_color = meshes.surface(points, faces, [[0]] * len(points))
+    torus.write_text(one_color.to_json(), encoding="utf-8")
+    for function in (cellcolor.solve, lambda s: cellcolor.judge(s, [0] * len(points))):
         with pytest.raises(InputError, match=r"torus\.surface\.json: vertices\[0\]: .* not planar"):
             function(torus)
-
-
-def _torus() -> LabelledSurface:
-    """Sixteen points in one color: a single cell of genus 1."""
-    k = np.arange(4) * np.pi / 2
-    u, v = (angles.ravel() for angles in np.meshgrid(k, k, indexing="ij"))
-    ring = 2 + np.cos(v)
-    points = np.stack([ring * np.cos(u), ring * np.sin(u), np.sin(v)], axis=1)
-    faces = []
-    for i in range(4):
-        for j in range(4):
-            a, b = 4 * i + j, 4 * ((i + 1) % 4) + j
-            c, d = 4 * i + (j + 1) % 4, 4 * ((i + 1) % 4) + (j + 1) % 4
-            faces += [(a, b, d), (a, d, c)]
-    return LabelledSurface("torus", ("red",), points, np.array(faces), ((0,),) * 16)
 
 
 def test_time_ends_the_work() -> None:

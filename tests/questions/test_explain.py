@@ -377,7 +377,7 @@ def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[s
     for wrong, said in (
         ((file, "--at", "1,2"), "'--at': a point is three numbers"),
         ((file, "--at", "1,2,x"), "'--at': a point is three numbers"),
-        ((file, "--at", "1,2,nan"), "'--at': a point is three numbers"),
+        ((file, "--at", "1,2,nan"), "at: must be three numbers"),
         ((file, "--at", "9,0,0"), "at: is 8.3"),
         ((tmp_path / "none.toml",), "No such file"),
         ((SCENES.parent / "index.json",), "is no scene"),

@@ -159,7 +159,7 @@ def test_the_largest_parts_come_first() -> None:
         assert choice.point.lift_offs == lift_offs and choice.proved_for_surface
         solved = cellcolor.solve(STRIP, uncovered_price=price)
         assert (solved.lift_offs, solved.covered_share) == (lift_offs, choice.point.covered_share)
-        assert "this costs least, proved for any division" in solved.solution.notes[0]
+        assert f"covered with {choice}. The rest" in solved.solution.notes[0]
     with pytest.raises(
         cellcolor.InputError, match="uncovered_price: must be a number from 0 to 1000000"
     ):

@@ -12,6 +12,7 @@ import subprocess
 import sys
 from importlib.metadata import entry_points
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from meshes import drawn
@@ -266,5 +267,52 @@ def test_without_a_cache_there_is_no_picture(tmp_path: Path) -> None:
     )
     assert (
         "1 failed" in out
-        and "no picture: it would be in pytest's cache, which is switched off" in out
+        and "no picture: pytest's cache is switched off (--cellcolor-cache DIR keeps it)" in out
     )
+
+
+def test_verdicts_are_properties_of_tests_that_are_marked(tmp_path: Path) -> None:
+    """Several workers share a cache of the caller's; a property test has its last verdict."""
+    (tmp_path / "row.surface.json").write_text(ROW.to_json())
+    (tmp_path / "test_planner.py").write_text(
+        "from hypothesis import given, settings, strategies as st\n"
+        "@settings(max_examples=5, database=None, deadline=None)\n"
+        "@given(st.integers(0, 9))\n"
+        "def test_mine(cellcolor_oracle, number):\n"
+        "    cellcolor_oracle('row.surface.json').assert_optimal([0] * 18)\n"
+        "def test_yours(cellcolor_oracle):\n"
+        "    cellcolor_oracle('row.surface.json').judge([0, 0, 1, 1, 0, 0] * 3)\n"
+        "def test_other():\n"
+        "    assert False\n"
+    )
+    options = ["-n", "2", "-m", "cellcolor", "--junit-xml", "report.xml", "--cellcolor-cache"]
+    command = [sys.executable, "-m", "pytest", *LOADED, "-q", "-p", "no:cacheprovider", *options]
+    done = subprocess.run(
+        [*command, "proofs"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert "2 passed" in done.stdout, done.stdout
+    cases = ElementTree.parse(tmp_path / "report.xml").getroot().iter("testcase")
+    said = {
+        case.get("name"): [(own.get("name"), own.get("value")) for own in case.iter("property")]
+        for case in cases
+    }
+    name = f"cellcolor: {ROW.name}"
+    assert [own for own, _ in said["test_mine"]] == [name]
+    assert "optimal" in str(said["test_mine"][0][1])
+    assert "2 fewer are proved to be enough" in str(said["test_yours"][0][1])
+    assert list((tmp_path / "proofs").glob("*.json"))
+
+
+def test_a_surface_that_fails_is_printed_with_its_import(tmp_path: Path) -> None:
+    """What is printed can be pasted: it makes the surface that failed."""
+    out = run(
+        tmp_path,
+        "from hypothesis import given, settings\n"
+        "from cellcolor.testing.strategies import labelled_surfaces\n"
+        "@settings(database=None, deadline=None)\n"
+        "@given(labelled_surfaces())\n"
+        "def test_mine(surface):\n"
+        "    assert len(surface.colors) < 2\n",
+    )
+    assert "from cellcolor.testing.strategies import sheet" in out
+    assert "surface=sheet(" in out

@@ -26,6 +26,7 @@ from cellcolor.frontend.arm.urdf import (
 )
 
 _FASTEST = 60.0  # rad/s
+_MOST_DEGREES = 800.0  # per second; beyond, as 1000, a velocity means that there is no limit
 _FIX = "give its position under [robot.fixed_joints], as {} = 0.0"
 _NO_FORCE = "or leave the force constraint out: force = false under [constraints] of the setup"
 _WAY_OUT = (
@@ -218,15 +219,15 @@ def _warnings(urdf: Urdf) -> tuple[str, ...]:
 
 
 def _in_degrees(names: tuple[str, ...], slides: Mask, velocity: Array) -> tuple[str, ...]:
-    """A warning of joints that turn faster than any: their velocity is in degrees."""
+    """A warning of joints that turn faster than any: their velocity may be in degrees."""
     found = [
         f"{name!r} {limit:g} rad/s"
         for name, limit in zip(names, np.where(slides, 0.0, velocity).tolist(), strict=True)
-        if limit > _FASTEST
+        if _FASTEST < limit <= _MOST_DEGREES
     ]
     if not found:
         return ()
-    return (f"faster than arms turn, so probably degrees per second: {', '.join(found)}",)
+    return (f"faster than arms turn; are these degrees per second? {', '.join(found)}",)
 
 
 def _axes(model: pin.Model) -> Array:

@@ -13,7 +13,9 @@ from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
+from cellcolor.frontend.parts.mending import in_words
 from cellcolor.frontend.parts.mesh import mesh_surface
+from cellcolor.frontend.parts.sides import between_sharp
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.tables import IN_RADIANS, Position, Table, Vector
 from cellcolor.mesh.triangle_mesh import TriangleMesh
@@ -113,7 +115,7 @@ class Cover(Table):
         try:
             patch = mesh_surface(whole.vertices[used], compact, deadline=deadline)
         except InputError as error:
-            place = _in_whole(error.field, used, np.flatnonzero(chosen))
+            place = _in_whole(error.field, whole, used, np.flatnonzero(chosen))
             message = f"chooses a patch that cannot be covered: {place}{error.message}"
             raise InputError(None, "cover", message) from error
         inside = np.bincount(faces.ravel(), minlength=len(whole.vertices)) == np.bincount(
@@ -151,12 +153,7 @@ class Cover(Table):
 
 def _grown(whole: Surface, region: Region) -> Mask:
     """The faces on the same side of all sharp edges as the face nearest to the seed."""
-    mesh = whole.mesh
-    edges, sides = mesh.pairs
-    sharp = np.zeros(len(mesh.edges), dtype=bool)
-    turned = angles_between(*(mesh.triangle_normals[side // 3] for side in sides.T))
-    sharp[edges] = turned > region.sharp_rad
-    part = mesh.parts(sharp)
+    part = between_sharp(whole.mesh, region.sharp_rad)
     return np.asarray(part == part[_nearest_face(whole, np.array(region.seed_m))])
 
 
@@ -186,10 +183,16 @@ def _listed(file: Path, faces: int) -> Mask:
     return listed
 
 
-def _in_whole(field: str | None, vertices: Index, faces: Index) -> str:
-    """``vertices[3]`` of the patch as that of the object, with a colon."""
+def _in_whole(field: str | None, whole: Surface, vertices: Index, faces: Index) -> str:
+    """``vertices[3]`` of the patch as that of the object, with a colon.
+
+    By its place where edges were halved: no file has those numbers.
+    """
     for name, numbers in (("vertices", vertices), ("faces", faces)):
         if field is not None and field.startswith(f"{name}["):
             own = int(field.removeprefix(f"{name}[").partition("]")[0])
-            return f"{name}[{numbers[own]}]: "
+            if whole.divided is None:
+                return f"{name}[{numbers[own]}]: "
+            corners = numbers[own] if name == "vertices" else whole.faces[numbers[own]]
+            return f"near {in_words(whole.vertices[corners].reshape(-1, 3).mean(axis=0))} m: "
     return ""

@@ -13,7 +13,7 @@ SHARP_RAD = 1.0
 
 _THIN = 0.03  # of the part's size; a side so near behind another makes a shell
 _MOSTLY = 0.6  # of the area, for the part to be one
-_POINTS = 200  # of the area that are looked at
+_POINTS = 100  # of the area that are looked at
 _ALIKE = 0.5  # of the larger side's area, at least, has the other one
 
 
@@ -26,20 +26,28 @@ def thickness(mesh: TriangleMesh) -> float | None:
     """Of a shell, the median distance in m from one side to the other behind it; None of others."""
     size = float(np.linalg.norm(np.ptp(mesh.points, axis=0)))
     corners, inward = mesh.points[mesh.corners], -np.nan_to_num(mesh.triangle_normals)
-    wanted = (np.arange(_POINTS) + 0.5) / _POINTS * mesh.areas.sum()
-    faces = np.minimum(np.searchsorted(np.cumsum(mesh.areas), wanted), len(corners) - 1)
+    points, faces = spread(mesh, _POINTS)
     middles = corners.mean(axis=1)
     radii = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
-    weights = np.random.default_rng(0).dirichlet((1.0, 1.0, 1.0), _POINTS)
     behind = np.full(_POINTS, np.inf)
-    for row, face in enumerate(faces.tolist()):
-        point = weights[row] @ corners[face]
+    for row, (point, face) in enumerate(zip(points, faces.tolist(), strict=True)):
         near = np.linalg.norm(middles - point, axis=1) <= radii + _THIN * size
         # What lies behind has its own outside on the other side.
         rows = np.flatnonzero(near & (inward @ inward[face] < -0.5))
         behind[row] = _first_hit(point, inward[face], corners[rows])
     found = behind <= _THIN * size
     return float(np.median(behind[found])) if found.mean() >= _MOSTLY else None
+
+
+def spread(mesh: TriangleMesh, count: int) -> tuple[Array, Index]:
+    """Points (k, 3) all over the surface, each for as much area, and the face (k,) of each."""
+    corners, areas = mesh.points[mesh.corners], mesh.areas
+    wanted = (np.arange(count) + 0.5) / count * areas.sum()
+    face = np.minimum(np.searchsorted(np.cumsum(areas), wanted), len(areas) - 1)
+    u, v = np.random.default_rng(0).random((2, count))
+    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+    weights = np.stack([1 - u - v, u, v], axis=1)
+    return np.einsum("ij,ijk->ik", weights, corners[face]), face
 
 
 def _first_hit(point: Array, way: Array, triangles: Array) -> float:
@@ -57,12 +65,17 @@ def _first_hit(point: Array, way: Array, triangles: Array) -> float:
     return float(far[inside].min(initial=np.inf))
 
 
-def pieces(mesh: TriangleMesh) -> list[Mask]:
-    """The faces (m,) between sharp edges, the piece with the largest area first."""
+def between_sharp(mesh: TriangleMesh, sharp_rad: float) -> Index:
+    """The number of the piece (m,) that each face is in; sharp edges part them."""
     edges, sides = mesh.pairs
     sharp = np.zeros(len(mesh.edges), dtype=bool)
-    sharp[edges] = angles_between(*(mesh.triangle_normals[s // 3] for s in sides.T)) > SHARP_RAD
-    part = mesh.parts(sharp)
+    sharp[edges] = angles_between(*(mesh.triangle_normals[s // 3] for s in sides.T)) > sharp_rad
+    return mesh.parts(sharp)
+
+
+def pieces(mesh: TriangleMesh) -> list[Mask]:
+    """The faces (m,) between sharp edges, the piece with the largest area first."""
+    part = between_sharp(mesh, SHARP_RAD)
     order = np.argsort(-np.bincount(part, mesh.areas), kind="stable")
     return [np.asarray(part == number) for number in order[:2]]
 

@@ -77,7 +77,7 @@ def test_a_new_kind_is_told_and_verified() -> None:
         assert report.problems == (f"bounds[0].certificate: {reason}",)
     (bound,) = solution.bounds or ()
     assert certificate_of(bound) == Apart((0, 1))
-    assert Apart((0, 1)).to_document() == {"lonely": (0, 1)}
+    assert Apart((0, 1)).to_document() == {"lonely": [0, 1]}
 
 
 def test_without_kind_or_verifier_it_is_a_claim(monkeypatch: pytest.MonkeyPatch) -> None:

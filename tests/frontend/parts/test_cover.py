@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -133,6 +135,11 @@ def test_a_patch_that_meets_itself_in_a_point(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=rf"cannot be covered: vertices\[{corner}\]: ") as caught:
         Cover(faces_file="faces.txt").patch(whole, tmp_path)
     assert caught.value.field == "cover"
+    # By its place where edges were halved, since no file has that number.
+    halved = replace(whole, divided=(whole.mesh, np.arange(len(whole.faces))))
+    place = ", ".join(f"{x:.4g}" for x in whole.vertices[corner])
+    with pytest.raises(InputError, match=re.escape(f"cannot be covered: near ({place}) m: ")):
+        Cover(faces_file="faces.txt").patch(halved, tmp_path)
 
 
 @pytest.mark.parametrize(
