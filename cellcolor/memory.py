@@ -1,7 +1,6 @@
-"""How much memory a step may take: long arrays are worked on in parts of a size in bytes.
+"""Long arrays are worked on in parts of one size, whose temporaries stay near the processor.
 
-Who works on many things says what one of them takes, as an upper bound that the tests hold against
-what numpy really holds. What cannot be done in parts is estimated, and refused before it is begun.
+What cannot be done in parts is estimated, and refused before it is begun.
 """
 
 from __future__ import annotations
@@ -15,31 +14,25 @@ from numpy.typing import NDArray
 
 from cellcolor.errors import TooLarge
 
-MEMORY = 16_000_000
-"""Bytes that the temporaries of one step may take at a time, in each process: so few that they stay
-near the processor. Steps that call others have theirs beside those of the others."""
+CHUNK = 2_500
+"""Configurations that a step works on at a time; its temporaries take some ten megabytes then."""
 
 
-def at_once(bytes_each: int) -> int:
-    """How many things of a size fit into ``MEMORY``; one at least."""
-    return max(1, MEMORY // max(1, bytes_each))
-
-
-def chunks(count: int, bytes_each: int) -> Iterator[slice]:
-    """Parts of a list of ``count`` things, each of which fits into ``MEMORY``."""
-    most = at_once(bytes_each)
+def chunks(count: int, each: int = 1) -> Iterator[slice]:
+    """Parts of a list of ``count`` things with ``each`` configurations, or what is as large."""
+    most = max(1, CHUNK // max(1, each))
     return (slice(first, min(first + most, count)) for first in range(0, count, most))
 
 
-def batches(sizes: NDArray[np.int64], bytes_each: int) -> Iterator[slice]:
-    """Parts of a list of groups (k,) of things: the things of a part fit into ``MEMORY``.
+def batches(sizes: NDArray[np.int64]) -> Iterator[slice]:
+    """Parts of a list of groups (k,) of things, with as many things as are worked on at a time.
 
     A group that is larger is a part of its own.
     """
-    total, first, most = np.cumsum(sizes), 0, at_once(bytes_each)
+    total, first = np.cumsum(sizes), 0
     while first < len(total):
         before = int(total[first - 1]) if first else 0
-        last = max(first + 1, int(np.searchsorted(total, before + most, side="right")))
+        last = max(first + 1, int(np.searchsorted(total, before + CHUNK, side="right")))
         yield slice(first, last)
         first = last
 

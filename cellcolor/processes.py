@@ -1,8 +1,7 @@
 """Programs and functions in processes of their own, which can be ended at any moment.
 
 :class:`Child` reads what a program prints until a deadline. :func:`watch` runs a command, and
-:func:`run_alone` a function, within limits of time and memory. Work that is spread over cores and
-writes into shared arrays is forked instead (``cellcolor.frontend.forked``).
+:func:`run_alone` a function, within limits of time and memory.
 
 Limits hold whatever the work does: the process is looked at from outside, and what takes too long
 or too much memory is killed with its children. If the watching process is killed itself, a shell

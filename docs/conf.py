@@ -53,7 +53,7 @@ maximum_signature_line_length = 88
 nitpicky = True
 # Names of other packages: no inventory of theirs is fetched while the site is built.
 _OTHERS = "annotated_types click coal fcl matplotlib mpl_toolkits networkx numpy ortools pinocchio"
-_OTHERS += " plotly pydantic pydantic_core rich scipy trimesh np nx pin hypothesis pytest _pytest"
+_OTHERS += " pydantic pydantic_core rich scipy trimesh np nx pin hypothesis pytest _pytest"
 nitpick_ignore_regex = [
     (r"py:attr", r"cellcolor\..*|\w+\.\w+"),  # they stand in the lists of their classes
     (r"py:.*", rf"({'|'.join([*_OTHERS.split(), *sys.stdlib_module_names])})(\..*)?"),

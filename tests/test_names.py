@@ -61,7 +61,7 @@ def test_the_readme_installs_what_its_commands_need() -> None:
 
 
 def test_messages_name_it(tmp_path: Path) -> None:
-    for package, extra in (("plotly", "viz"), ("pinocchio", "frontend")):
+    for package, extra in (("matplotlib", "viz"), ("pinocchio", "frontend")):
         with pytest.raises(Exception, match=f"pip install '{re.escape(DISTRIBUTION)}.{extra}.'"):  # noqa: SIM117
             with extras.extras_for(tmp_path):
                 raise ModuleNotFoundError(name=f"{package}.part")

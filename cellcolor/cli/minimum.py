@@ -254,7 +254,7 @@ def show(
     """Draw an instance, a labelled surface or a scene, by cell unless an option says otherwise.
 
     With a solution after what was solved, or a plan on its surface: by segment. Of folders that
-    cellcolor plan has written: their reports on one page, with a table.
+    cellcolor plan has written: their reports on one page.
     """
     if all(file.is_dir() for file in files):
         from cellcolor.door.plan_files import compare_plans

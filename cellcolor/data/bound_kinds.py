@@ -124,7 +124,7 @@ def _conflict_shown(conflicts: Sequence[CertifiedCrossing], instance: Instance) 
         for place, area in enumerate(areas, start=1):
             which = f"{'cell' if len(area) == 1 else 'cells'} {listed(area)}"
             text = f"{letter}{place}: {which}, to be connected in {name}"
-            marks.append(Mark(f"{letter}{place}", text, area, group))
+            marks.append(Mark(f"{letter}{place}", text, area, (color,)))
         text = f"a connection of {letter}1 and {letter}2 in {name}"
         connections.append(Connection(text, color, *areas))
     notes = [

@@ -71,13 +71,13 @@ class Mark:
         label: what is written on them.
         text: what they are.
         cells: the cells.
-        group: marks of one group have one color.
+        colors: those that they can be covered in, as far as that matters.
     """
 
     label: str
     text: str
     cells: Collection[int]
-    group: int
+    colors: Collection[int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +153,7 @@ def marks_of(instance: Instance, cells: Sequence[int]) -> tuple[Mark, ...]:
             str(cell),
             f"cell {cell}: {listed(instance.colors[c] for c in instance.cells[cell].colors)}",
             (cell,),
-            number,
+            instance.cells[cell].colors,
         )
-        for number, cell in enumerate(cells)
+        for cell in cells
     )

@@ -154,7 +154,7 @@ class StrokeFeed(Value):
     @property
     def why(self) -> str:
         """What slows the stroke down, as the end of a sentence."""
-        if not self.slow_share:
+        if self.slow_share < 0.005:  # said as 0 %
             return ""
         if self.joint is None:
             return ", no joint is near a limit"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from numbers import Integral
@@ -45,13 +45,13 @@ class Drawing:
         """The contents of a file with the suffix ``.html``, ``.png`` or ``.svg``.
 
         Raises:
-            InputError: the extra ``viz`` is not installed.
+            InputError: the extra ``viz`` is not installed; a page of a surface does not need it.
         """
         with extras_for(f"a picture {suffix}"):
             if suffix == ".html":
-                from cellcolor.pictures import interactive
+                from cellcolor.pictures.viewer import page
 
-                return interactive.render(self.picture)
+                return page.render(self.picture)
             from cellcolor.pictures import static
 
             return static.render(self.picture, suffix[1:])
@@ -89,6 +89,7 @@ class View:
         vertex: the vertex to put the arm on.
         branch: the branch of the arm or of the reasons, by name or number.
         plan: the plan of another planner, or its file.
+        marked: vertices of this plan to be pointed at.
     """
 
     name: str
@@ -97,6 +98,7 @@ class View:
     vertex: int | None = None
     branch: str | int | None = None
     plan: Plan | str | PathLike[str] | None = None
+    marked: Sequence[int] | None = None
 
 
 def kind_of_picture(path: Path) -> FileKind:
@@ -132,12 +134,13 @@ def show(
     vertex: int | None = None,
     branch: str | int | None = None,
     plan: Plan | str | PathLike[str] | None = None,
+    marked: Sequence[int] | None = None,
 ) -> Drawing:
     """Draw a scene, a labelled surface, an instance or a result.
 
     A surface is drawn by cell and a result by segment, unless an option asks for something else;
-    an instance is drawn on the surface that it names, and without one as a graph. Needs the extra
-    ``viz``.
+    an instance is drawn on the surface that it names, and without one as a graph. All but pages in
+    space need the extra ``viz``.
 
     Args:
         source: what to draw: its file, its shipped name, or the value.
@@ -150,6 +153,7 @@ def show(
         vertex: draws the arm on this vertex, in one ``branch``.
         branch: an inverse-kinematic branch, by name or number.
         plan: draws the segments of this plan of another planner, or of the file of one.
+        marked: vertices of this plan to be pointed at; their segments are marked as well.
 
     Raises:
         InputError: the source has no such picture, or the file cannot be written.
@@ -167,7 +171,7 @@ def show(
         view = names[0] if names else _usual_view(source, subject)
     if view in ("segments", "why") and solution is None and isinstance(source, Result):
         solution = source.solution
-    seen = View(view, solution, color, vertex, branch, plan)
+    seen = View(view, solution, color, vertex, branch, plan, marked)
     drawing = draw(picture_of(seen), subject, seen)
     if path is not None:
         drawing.save(path)
@@ -189,7 +193,7 @@ def picture_of(view: View) -> Picture:
         InputError: there is no such picture, it needs another option, or it does not take one.
     """
     picture = make_picture(view.name)
-    for part in ("color", "vertex", "branch", "solution", "plan"):
+    for part in ("color", "vertex", "branch", "solution", "plan", "marked"):
         given = getattr(view, part)
         if given is None and part in picture.needs:
             raise InputError(None, part, f"the picture {view.name} needs it")
@@ -211,11 +215,11 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
     """
     file = None if subject.path is None else str(subject.path)
 
-    def vertex() -> int:
-        count, asked = len(subject.surface.vertices), view.vertex
-        if isinstance(asked, Integral) and 0 <= asked < count:
+    def vertex(asked: object, field: str = "vertex") -> int:
+        count = len(subject.surface.vertices)
+        if isinstance(asked, Integral) and 0 <= int(asked) < count:
             return int(asked)
-        raise InputError(file, "vertex", f"{asked!r} is not among 0 to {count - 1}")
+        raise InputError(file, field, f"{asked!r} is not among 0 to {count - 1}")
 
     def color() -> int:
         place = None if subject.surface_path is None else str(subject.surface_path)
@@ -238,13 +242,14 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
         "plan": lambda: view.plan if isinstance(view.plan, Plan) else Plan.read(view.plan or ""),
         "reasons": lambda: subject.reasons,
         "color": color,
-        "vertex": vertex,
+        "vertex": lambda: vertex(view.vertex),
+        "marked": lambda: tuple(vertex(asked, "marked") for asked in view.marked or ()),
         "branch": branch,
     }
     if "surface" in picture.needs and not subject.names_surface:
         message = f"{subject.why_no_surface}; only the graph can be shown (--graph)"
         raise InputError(file, "surface", message)
-    optional = ("color", "vertex", "branch", "solution")
+    optional = ("color", "vertex", "branch", "solution", "marked")
     missing = {part for part in optional if getattr(view, part) is None}
     missing |= {"build"} if subject.built is None else set()
     if not subject.names_surface:

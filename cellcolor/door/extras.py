@@ -17,8 +17,6 @@ DISTRIBUTION = "fewest-lift-offs"
 _EXTRAS = {
     "distributed": "cluster",
     "matplotlib": "viz",
-    "mpl_toolkits": "viz",
-    "plotly": "viz",
     "coal": "frontend",
     "fcl": "frontend",
     "igl": "frontend",
@@ -32,7 +30,7 @@ _EXTRAS = {
 DISTRIBUTIONS = (
     *("click", "networkx", "numpy", "ortools", "pydantic", "rich"),
     *("pin", "python-fcl", "libigl", "scipy", "trimesh", "EAIK", "potpourri3d", "mcap"),
-    *("gpytoolbox", "matplotlib", "plotly"),
+    *("gpytoolbox", "matplotlib"),
     *("clingo", "highspy", "pychoco", "pyscipopt", "python-sat", "dask", "distributed"),
 )
 """What the package and its extras need, except those for tests and docs."""

@@ -100,25 +100,13 @@ def save(folder: Path, files: Mapping[str, bytes]) -> tuple[str, ...]:
 def compare_plans(folders: Sequence[Path], page: Path) -> None:
     """Write one page about several plans, such as of other patterns or places: ``plan``'s folders.
 
-    The page has a table with a row for each plan, and their reports below, which play by
-    themselves.
-
     Raises:
-        InputError: a folder lacks a file of a whole plan; ``page`` does not end in .html, is no
-            page of cellcolor's, or cannot be written.
+        InputError: a folder has no report; ``page`` does not end in .html, is no page of
+            cellcolor's, or cannot be written.
     """
-    from cellcolor.pictures.side_by_side import SavedPlan, render_side_by_side
+    from cellcolor.pictures.side_by_side import render_side_by_side
 
     if page.suffix != ".html":
         raise InputError(str(page), None, "must end in .html: several plans are shown on a page")
-    plans = [
-        SavedPlan(
-            folder.name,
-            Solution.read(folder / "solution.json"),
-            Trajectory.read(folder / "trajectory.json"),
-            TrajectoryVerdict.read(folder / "verdict.json"),
-            read_text(folder / "report.html"),
-        )
-        for folder in folders
-    ]
-    write([Output(page, HTML, [render_side_by_side(plans)])])
+    pages = {folder.name: read_text(folder / "report.html") for folder in folders}
+    write([Output(page, HTML, [render_side_by_side(pages)])])

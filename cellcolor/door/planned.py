@@ -102,9 +102,9 @@ class UnfinishedPlan:
 
     def page(self) -> bytes:
         """``report.html``, complete in itself: what there is, and what is missing."""
-        from cellcolor.pictures.report_page.page import render_page
+        from cellcolor.pictures.report_page.page import render_report
 
-        return render_page(self._report())
+        return render_report(self._report())
 
     def _files(self, export_step_s: float | None = None) -> dict[str, bytes]:  # noqa: ARG002
         """All files but the page, by name, as far as the plan came."""
@@ -204,10 +204,10 @@ class PlannedScene(UnfinishedPlan):
     def _motion(self, export_step_s: float | None = None) -> PlannedMotion:
         """What exports are made of."""
         from cellcolor.exports.interface import PlannedMotion
-        from cellcolor.pictures.report_page.surface_modes import segment_fills
+        from cellcolor.pictures.surface_pictures import by_segment
 
         painted, trajectory = self.painted, self.trajectory
-        fills = segment_fills(painted)
+        fills = tuple(own.rgb for own in by_segment(painted).classes if own.number is not None)
         prepared = self.built.prepared
         task = prepared.setup.task
         return PlannedMotion(

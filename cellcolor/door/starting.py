@@ -187,6 +187,7 @@ def arm_of(
     from cellcolor.frontend.arm.assembly import fix_joints
     from cellcolor.frontend.arm.kinematics import forward
     from cellcolor.frontend.arm.urdf import load_urdf
+    from cellcolor.frontend.contact.engine import pairs_of
     from cellcolor.frontend.reach.always_touching import always_touching
     from cellcolor.frontend.reach.prepared_arm import prepare_arm
 
@@ -224,7 +225,7 @@ def arm_of(
             prepared = prepare_arm(found.setup)
             reach = prepared.kinematics.reach
             # Before a place is sought: with such a pair tested, the arm could stand nowhere.
-            pairs = always_touching(prepared.near_itself)
+            pairs = always_touching(prepared.robot, pairs_of(prepared.robot))
         except InputError as error:
             faults.append(error)
             continue

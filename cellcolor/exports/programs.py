@@ -66,19 +66,15 @@ def controller_of(planned: PlannedMotion) -> Controller:
         raise NotForThisArm("the arm does not have six joints that turn")
     if given is None and not _named_as_ur(axes):
         raise NotForThisArm("the setup names no controller (table [controller], key language)")
-    if given is None or (given.language == "urscript" and given == _plain(given)):
+    controller = given or Controller(language="urscript")
+    if _is_ur(controller):
         _check_ur(axes)
-    return given or Controller(language="urscript")
+    return controller
 
 
-def _plain(given: Controller) -> Controller:
-    """The controller without signs and offsets."""
-    return Controller(
-        language=given.language,
-        base_link=given.base_link,
-        tool=given.tool,
-        work_object=given.work_object,
-    )
+def _is_ur(controller: Controller) -> bool:
+    """Whether the arm has to be one of Universal Robots: angles are theirs, none is changed."""
+    return controller.language == "urscript" and controller.counts_as_urdf
 
 
 def shown(controller: Controller, joints: Array) -> Array:
@@ -94,7 +90,7 @@ def _lines(planned: PlannedMotion, language: Language, linear: bool) -> Iterator
     step = planned.step_s or (UR_STEP if language.stepped else None)
     found = stretches(planned.trajectory, step)
     base = axes.base
-    if controller.language == "urscript" and controller == _plain(controller):
+    if _is_ur(controller):
         base = _ur_base(axes)
     tool, work_object = controller.frames
     job = Job(
@@ -113,8 +109,10 @@ def _lines(planned: PlannedMotion, language: Language, linear: bool) -> Iterator
     yield from language.head(job)
     for number, own in enumerate(found, start=1):
         moves = _moves(planned, controller, axes, own, linear)
-        yield from language.begin(number, next(moves))
-        pressing = False
+        start = next(moves)
+        yield from language.begin(number, start)
+        yield from language.press(job) if start.presses else ()
+        pressing = start.contact
         for move in moves:
             if move.begins or (not move.contact and pressing):
                 yield language.remark(f"contact {'begins' if move.contact else 'ends'}")
@@ -165,9 +163,9 @@ def _moves(
     linear: bool,
 ) -> Iterator[Move]:
     """The places that a stretch leads to, the first one where it begins."""
-    base = np.linalg.inv(planned.part) @ axes.tips(own.joints)
-    turns, tips = quaternions(base[:, :3, 0], base[:, :3, 2]), base[:, :3, 3]
-    presses = _presses(own, -base[:, :3, 2]) if planned.force_n else np.zeros(0, dtype=np.int64)
+    poses = np.linalg.inv(planned.part) @ axes.tips(own.joints)
+    turns, tips = quaternions(poses[:, :3, 0], poses[:, :3, 2]), poses[:, :3, 3]
+    presses = _presses(own, -poses[:, :3, 2]) if planned.force_n else np.zeros(0, dtype=np.int64)
     edges = np.flatnonzero(np.diff(own.contact))
     kept = np.concatenate([edges, edges + 1, presses])
     rows = via_points(own.times, own.joints / WITHIN, kept)
@@ -176,8 +174,8 @@ def _moves(
     straight = own.contact[1:] & own.contact[:-1] & linear  # of each step
     if linear:
         way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(tips, axis=0), axis=1))])
-        poses = np.concatenate([tips / BESIDE, turns / (ASIDE / 2)], axis=1)
-        touching = via_points(way, poses, kept)
+        asked = np.concatenate([tips / BESIDE, turns / (ASIDE / 2)], axis=1)
+        touching = via_points(way, asked, kept)
         rows = np.union1d(rows[~own.contact[rows]], touching[own.contact[touching]])
     degrees = shown(controller, own.joints)
     feeds = np.linalg.norm(slopes(own.times, tips), axis=1)

@@ -339,8 +339,8 @@ def _given_up(valid: Mask, coloring: Coloring) -> tuple[int, ...]:
 
 
 def _meta(scene: Scene, stages: Stages, seconds: dict[str, float]) -> dict[str, Any]:
-    packages = {"pin": "pin", "trimesh": "trimesh", "fcl": "python-fcl", "numpy": "numpy"}
-    versions = {name: importlib.metadata.version(package) for name, package in packages.items()}
+    packages = ("pin", "coal", "trimesh", "numpy")
+    versions = {package: importlib.metadata.version(package) for package in packages}
     slivers = stages.cleaned.report
     return {
         "scene": scene.model_dump(mode="json"),

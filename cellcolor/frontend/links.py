@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 
@@ -12,11 +11,9 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import Deadline
-from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.reach.between import at_domain_border, bytes_of_point, remains_valid
+from cellcolor.frontend.reach.between import at_domain_border, remains_valid
 from cellcolor.frontend.reach.continuity import link
-from cellcolor.frontend.reach.smooth import bytes_of_following
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.memory import chunks
 
@@ -54,16 +51,13 @@ def linked_along(
     """Whether each branch moves along mesh edges (k, 2) without a jump, (k, branches)."""
     robot = prepared.robot
     limits = (robot.lower, robot.upper) if prepared.setup.constraints.collision else None
-    linked = shared((len(edges), candidates.valid.shape[1]), np.bool_)
+    linked = np.zeros((len(edges), candidates.valid.shape[1]), dtype=bool)
     probe = partial(prepared.arm.probe, deadline=deadline)
-
-    def link_part(part: slice) -> None:
+    for part in chunks(len(edges), linked.shape[1]):
+        deadline.check()
         linked[part] = link(
             prepared.surface, edges[part], candidates, prepared.arm.measure, limits, probe
         )
-
-    each = linked.shape[1] * bytes_of_following(robot.joints)
-    _in_parts(link_part, chunks(len(edges), each), deadline)
     return linked
 
 
@@ -84,10 +78,8 @@ def valid_links(
         anew: (edges, branches) those of the known ones that are tested again.
     """
     surface, edges = prepared.surface, continuous.edges
-    linked = shared(continuous.linked.shape, np.bool_)
-    linked[:] = continuous.linked
-    reasons = shared(linked.shape, np.uint8)
-    reasons[:] = VALID
+    linked = continuous.linked.copy()
+    reasons = np.full(linked.shape, VALID, dtype=np.uint8)
     near_border = at_domain_border(edges, candidates.valid)
     new = np.ones(linked.shape, dtype=bool)
     if known is not None:
@@ -96,15 +88,11 @@ def valid_links(
         new = anew | (near_border != at_domain_border(edges, its_candidates.valid))
         linked &= new | before.linked
         reasons[~new] = before.reasons[~new]
-    each = 2 * bytes_of_point(len(tracked))  # of a link: at both its ends
     asked = np.flatnonzero((linked & new).any(axis=1))
-
-    def free_part(part: slice) -> None:
+    for part in chunks(len(asked) * prepared.setup.constraints.collision):
+        deadline.check()
         rows = asked[part]
         linked[rows] &= prepared.workplace.tip.free_along(surface, edges[rows])[:, None]
-
-    if prepared.setup.constraints.collision:
-        _in_parts(free_part, chunks(len(asked), each), deadline)
     spacing = prepared.setup.continuity.validity_spacing_m
     assert spacing is not None  # the caller has checked
     counts = np.maximum(np.ceil(surface.lengths(edges) / spacing).astype(int), 2)
@@ -112,32 +100,23 @@ def valid_links(
     longest = prepared.judge.tracked_steps
     all_rows, all_branches = np.nonzero(linked & new)
 
-    def test_part(part: slice) -> None:
+    for part in chunks(len(all_rows)):
+        deadline.check()
         rows, branches = all_rows[part], all_branches[part]
         pieces = np.where(near_border[rows, branches], counts[rows], 1)
 
-        def test(points: Array, directions: Array, at: Index) -> tuple[Mask, Array]:
-            found = prepared.arm.follow(points, directions, branches[at])
+        def test(
+            points: Array, directions: Array, at: Index, own: Index = rows, of: Index = branches
+        ) -> tuple[Mask, Array]:
+            found = prepared.arm.follow(points, directions, of[at])
             verdicts = prepared.judge(found, deadline)
             valid = np.asarray(verdicts.reasons == VALID)
             failed = at[~valid]
-            reasons[rows[failed], branches[failed]] = verdicts.reasons[~valid]
+            reasons[own[failed], of[failed]] = verdicts.reasons[~valid]
             return valid, verdicts.tracked
 
         linked[rows, branches] = remains_valid(
             surface, edges[rows], branches, pieces, at_vertices, longest, test
         )
 
-    _in_parts(test_part, chunks(len(all_rows), each), deadline)
     return Links(edges, linked, reasons)
-
-
-def _in_parts(work: Callable[[slice], None], slices: Iterable[slice], deadline: Deadline) -> None:
-    """Work on slices of a long list, as long as there is time, in several processes."""
-    parts = list(slices)
-
-    def work_on(number: int) -> None:
-        deadline.check()
-        work(parts[number])
-
-    share_out(work_on, len(parts))

@@ -18,10 +18,9 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.far_shapes import notes_on_shapes
 from cellcolor.frontend.arm.inverse import InverseKinematics
-from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.collision import body_ends
-from cellcolor.frontend.contact.solids import Solid, mesh_solid
+from cellcolor.frontend.arm.shape import Shape
+from cellcolor.frontend.contact.engine import Contacts, pairs_of
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_units
 from cellcolor.frontend.parts.inspection import note_on_crossings
@@ -29,7 +28,7 @@ from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.rounding import note_on_triangles
 from cellcolor.frontend.parts.sides import note_on_shell
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.reach.always_touching import always_touching, check_capsules
+from cellcolor.frontend.reach.always_touching import always_touching
 from cellcolor.frontend.reach.prepared_arm import PreparedArm, prepare_arm
 from cellcolor.frontend.reach.sheets import in_sheets
 from cellcolor.frontend.reach.validity import Judge
@@ -50,7 +49,7 @@ class PreparedPart:
     """
 
     surface: Surface
-    body: Solid
+    body: Shape
     open: bool
 
 
@@ -74,7 +73,7 @@ class PreparedScene:
     notes: tuple[str, ...]
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Solids of python-fcl cannot be pickled: where it is unpickled the scene is read again.
+        # Models of Pinocchio's cannot be pickled: where it is unpickled the scene is read again.
         return _prepared_on, (self.scene, self.surface)
 
     @property
@@ -171,7 +170,7 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     shape = covered
     if scene.solid_object is not None:
         shape = scene.solid_object.surface(scene.folder, deadline)
-    body = mesh_solid(shape.vertices, shape.faces, deadline)
+    body = Shape("mesh", vertices=shape.vertices, faces=shape.faces)
     part = PreparedPart(covered, body, bool(shape.mesh.border.any()))
     _, workplace = _in_place(scene, part, _around(scene, arm, part, deadline))
     judge = Judge(workplace, scene.validity_test)
@@ -181,10 +180,6 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
         notes += note_on_crossings(covered.mesh) + note_on_shell(covered)
         notes += note_on_triangles(surface, setup.task.rounding_m)
     if setup.constraints.collision:
-        home = None if setup.motion is None else setup.motion.home
-        with naming(setup.file):
-            wide = check_capsules(arm.near_itself, home)
-        notes += () if wide is None else (wide,)
         notes += _notes_on_contacts(workplace, float(lengths.max()))
     return named(PreparedScene(scene, workplace, part, surface, judge, notes), deadline)
 
@@ -212,15 +207,14 @@ def _around(scene: Scene, arm: PreparedArm, part: PreparedPart, deadline: Deadli
 def _in_place(scene: Scene, part: PreparedPart, around: Workplace) -> tuple[Surface, Workplace]:
     """A part where its scene has it: what has to be covered, and the workplace with its body."""
     surface = part.surface.placed(scene.placement)
-    body = part.body.placed(scene.placement)
-    setup, near = scene.setup, around.arm.near_object
-    at_zero = forward(near, np.zeros((1, near.joints)))
-    blocked = body.touched_by_fixed(near, body_ends(near, at_zero), at_zero)
-    if blocked is not None and setup.constraints.collision:
-        margin = setup.margins.to_object_m
-        wider = f", or nearer than {margin:g} m (margins.to_object_m)" if margin else ""
-        message = f"the object stands in the robot's {blocked!r}{wider}"
-        raise InputError(None, "placement", message)
+    body, robot = scene.placement.standing(part.body), around.robot
+    margin = scene.setup.margins.to_object_m
+    fixed = [each for each in robot.bodies if each.joint == 0 and scene.setup.constraints.collision]
+    for each in fixed:
+        if Contacts([(each, body, margin)], robot)(np.zeros((1, robot.joints)))[0]:
+            wider = f", or nearer than {margin:g} m (margins.to_object_m)" if margin else ""
+            message = f"the object stands in the robot's {each.link!r}{wider}"
+            raise InputError(None, "placement", message)
     return surface, replace(around, target=body)
 
 
@@ -232,6 +226,7 @@ def _prepared_on(scene: Scene, surface: Surface) -> PreparedScene:
 def _notes_on_contacts(place: Workplace, longest: float) -> tuple[str, ...]:
     """Likely mistakes in the collision shapes; ``longest`` edge of the mesh in m."""
     robot, found = place.robot, []
+    margin = place.setup.margins.between_links_m
     coarse = _too_coarse(robot, place.obstacles, longest)
     if coarse is not None:
         found.append(coarse)
@@ -245,12 +240,12 @@ def _notes_on_contacts(place: Workplace, longest: float) -> tuple[str, ...]:
             f"{first!r} and {second!r} overlap in all of 100 configurations, so none will be "
             "valid: are their shapes too large (robot.mesh_collision_of), or may they touch "
             "(robot.may_touch)?"
-            for first, second in always_touching(place.arm.near_itself)
+            for first, second in always_touching(robot, pairs_of(robot, margin))
         ]
     return tuple(found)
 
 
-def _too_coarse(robot: Robot, obstacles: tuple[Solid, ...], longest: float) -> str | None:
+def _too_coarse(robot: Robot, obstacles: tuple[Shape, ...], longest: float) -> str | None:
     """A warning where the longest mesh edge (m) is longer than the tool or an obstacle is wide.
 
     A vertex says nothing of what is far from it.

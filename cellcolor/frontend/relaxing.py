@@ -16,7 +16,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from cellcolor.frontend.contact.solids import Solid
+from cellcolor.frontend.arm.shape import Shape
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.prepared import PreparedScene, named
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
@@ -235,7 +235,7 @@ class ObstacleBody(Relaxation):
     def applied(self, prepared: PreparedScene) -> PreparedScene:
         """Without it, or with it moved straight away from the middle of the part's surface."""
         place, scene, here = prepared.workplace, prepared.scene, self.number - 1
-        moved: tuple[Solid, ...] = ()
+        moved: tuple[Shape, ...] = ()
         if self.amount < np.inf:
             obstacle = scene.obstacle[here]
             vertices, _ = obstacle.shell(scene.folder)

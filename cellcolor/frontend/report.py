@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import fcl
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
@@ -17,7 +16,8 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array, Mask, unit
 from cellcolor.data.wording import count
 from cellcolor.frontend.arm.kinematics import frames_along
-from cellcolor.frontend.contact.fcl_bodies import mesh_model
+from cellcolor.frontend.arm.shape import Shape
+from cellcolor.frontend.contact.engine import meet
 from cellcolor.frontend.contact.stand_in_report import StandInReport
 from cellcolor.frontend.parts.sides import spread
 from cellcolor.frontend.parts.surface import Surface
@@ -251,7 +251,7 @@ def _from_behind(mesh: TriangleMesh, viewpoints: Array) -> float:
     """The share of the visible points that are seen only from behind."""
     vertices, faces = mesh.points, mesh.corners
     points, face = spread(mesh, _POINTS)
-    shape = fcl.CollisionObject(mesh_model(vertices, faces), fcl.Transform())
+    shape = Shape("mesh", vertices=vertices, faces=faces)
     normals = mesh.area_vectors[face]
     seen, front = np.zeros((2, len(points)), dtype=bool)
     for eye in viewpoints:
@@ -261,16 +261,15 @@ def _from_behind(mesh: TriangleMesh, viewpoints: Array) -> float:
     return float((seen & ~front).sum() / max(seen.sum(), 1))
 
 
-def _visible(shape: fcl.CollisionObject, eye: Array, points: Array) -> Mask:
+def _visible(shape: Shape, eye: Array, points: Array) -> Mask:
     """Whether nothing of the shape lies before points (k, 3) of it, (k,)."""
     sights = (1 - _SHORT) * (points - eye)
     turns, middles = frames_along(unit(sights)), eye + sights / 2
     visible = np.zeros(len(points), dtype=bool)
     for row, length in enumerate(np.linalg.norm(sights, axis=1).tolist()):
         if length:
-            capsule, place = fcl.Capsule(_THIN, length), fcl.Transform(turns[row], middles[row])
-            line, request = fcl.CollisionObject(capsule, place), fcl.CollisionRequest()
-            visible[row] = not fcl.collide(shape, line, request, fcl.CollisionResult())
+            line = Shape("capsule", (_THIN, length), rotation=turns[row], origin=middles[row])
+            visible[row] = not meet(shape, line)
     return visible
 
 

@@ -22,7 +22,7 @@ from pydantic import (
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
-from cellcolor.frontend.contact.collision import HalfSpace
+from cellcolor.frontend.contact.movement import HalfSpace
 from cellcolor.frontend.contact.obstacle import OBSTACLES, Obstacle
 from cellcolor.frontend.parts.cover import Cover
 from cellcolor.frontend.parts.mesh import ArraysObject

@@ -26,8 +26,8 @@ from cellcolor.frontend.tables import (
     Vector,
 )
 
-MeshCollision = Literal["hull", "exact", "capsules"]
-"""What stands for a link's mesh: its convex hull, nothing but itself, or capsules around it."""
+MeshCollision = Literal["hull", "exact"]
+"""What stands for a link's mesh: its convex hull, or nothing but itself."""
 
 
 class RobotFiles(Table):
@@ -41,7 +41,7 @@ class RobotFiles(Table):
     the flange link. ``fixed_joints`` has positions of joints that do not move, in rad, or in m of
     prismatic ones. Pairs of links that ``may_touch`` are not tested against each other, as
     neighbors are not. What collides in the place of a link's mesh is its convex ``hull``, the mesh
-    itself (``exact``) or ``capsules`` around it, for single links by ``mesh_collision_of``.
+    itself (``exact``), for single links by ``mesh_collision_of``.
     ``package://`` is looked for in ``package_folders`` first.
     """
 
@@ -327,6 +327,11 @@ class Controller(Table):
         """The tool and the work object."""
         usual = (1, 1) if self.language in _NUMBERED else ("cellcolor_tool", "cellcolor_part")
         return self.tool or usual[0], self.work_object or usual[1]
+
+    @property
+    def counts_as_urdf(self) -> bool:
+        """Whether the controller shows the URDF's angles."""
+        return set(self.signs) == {1} and not any(self.offsets_deg) and not self.coupling
 
     @property
     def coupling(self) -> int:

@@ -8,12 +8,12 @@ import numpy as np
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.body import Body
-from cellcolor.frontend.arm.kinematics import Poses, bytes_of_poses, forward
-from cellcolor.frontend.arm.robot import Robot, wider, wider_body
-from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.shape import Shape
+from cellcolor.frontend.contact.engine import Contacts, Pair, pairs_of, poses_along
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.always_touching import always_touching
-from cellcolor.memory import chunks
 from cellcolor.motion.following import joint_space
 
 _TOUCHING = 0.001  # m; so far the tip of a tool that leaves the object may be in it
@@ -48,42 +48,53 @@ class FreeSpace:
                 smaller one.
             leaving: see the class.
         """
-        place = prepared.workplace
+        place, robot = prepared.workplace, prepared.robot
         self._place, self._on = place, prepared.setup.constraints.collision
         self.space = joint_space(prepared)
-        self._leaving, margins = leaving, prepared.setup.margins
-        tip, last = place.tip.body, _last(place.robot)
+        self._leaving, margins, room = leaving, prepared.setup.margins, share * clearance
+        last, tip = _last(robot), place.tip.body
         if last is not None:
-            tip = replace(tip, link=place.robot.bodies[last].link)
+            tip = replace(tip, link=robot.bodies[last].link)
+        self._tip = tip
+        moving = [body for body in reversed(robot.bodies) if body.joint > 0]
+        exempt = place.setup.robot.may_touch_ground
+        free = [body for body in robot.bodies if body.link not in exempt]
+        own_tip = [] if leaving else [tip]  # no link that may touch the ground
+        self._things = {id(place.target): "the object"}
+        pairs: list[Pair] = []
 
-        def keeping(room: float, margin: float) -> Robot:
-            """The robot with room around it, and a margin that the tip's region does not have."""
-            around = wider(place.robot, room + margin)
-            return around if leaving else _with_tip(around, wider_body(tip, room))
+        def keep(thing: Shape, bodies: list[Body], margin: float) -> None:
+            """Room around bodies, and a margin that the tip's region does not have."""
+            pairs.extend((body, thing, room + margin) for body in bodies)
+            pairs.extend((body, thing, room) for body in own_tip)
 
-        room = share * clearance
-        self._near_obstacles = keeping(room, margins.to_obstacles_m)
-        self._near_object = keeping(room, margins.to_object_m)
-        self._near_ground = keeping(room, margins.to_ground_m)
-        # Two bodies that keep a distance from each other keep half of it each. Links that are never
-        # so far apart, as a tool on a short flange and the link behind it, keep only the margin.
-        whole = keeping(clearance / 2, margins.between_links_m / 2)
-        half = keeping(room / 2, margins.between_links_m / 2)
-        never = {frozenset(pair) for pair in always_touching(whole)} if clearance else set()
-
-        def of_pairs(robot: Robot, apart: bool) -> Robot:
-            bodies = robot.bodies
-            return replace(
-                robot,
-                tested_pairs=tuple(
-                    (i, j)
-                    for i, j in robot.tested_pairs
-                    if (frozenset((bodies[i].link, bodies[j].link)) not in never) == apart
-                ),
-            )
-
-        margin = keeping(0.0, margins.between_links_m / 2)
-        self._halves = (of_pairs(half, True), *([of_pairs(margin, False)] if never else []))
+        if place.ground is not None:
+            ground = place.ground.shape
+            self._things[id(ground)] = "the ground"
+            keep(ground, free, margins.to_ground_m)
+        for number, obstacle in enumerate(place.obstacles):
+            self._things[id(obstacle)] = f"obstacle[{number}]"
+            keep(obstacle, moving, margins.to_obstacles_m)
+        keep(place.target, moving, margins.to_object_m)
+        # Links that are never so far apart, as a tool on a short flange and the link behind it,
+        # keep only the margin.
+        between = pairs_of(robot, margins.between_links_m)
+        between += [
+            (robot.bodies[i], tip, margins.between_links_m / 2)
+            for i, j in robot.tested_pairs
+            if j == last and not leaving
+        ]
+        apart = [(one, other, margin + clearance) for one, other, margin in between]
+        never = {frozenset(pair) for pair in always_touching(robot, apart)} if clearance else set()
+        pairs += [
+            (one, other, margin if frozenset((one.link, other.link)) in never else margin + room)
+            for one, other, margin in between
+        ]
+        self._contacts = Contacts(pairs, robot)
+        # The tool's axis between the tip and the tool's body, in a frame on the tip.
+        start, end = (np.array([0.0, 0.0, -far]) for far in (_TOUCHING, tip.length))
+        through = [(Body("tool tip", 1, start, end, _THIN, False), place.target, 0.0)]
+        self._through = Contacts(through if leaving and tip.length > _TOUCHING else [])
 
     def __call__(self, configurations: Array) -> Mask:
         """Which of configurations (k, joints), taken as they are, are free, (k,)."""
@@ -99,86 +110,26 @@ class FreeSpace:
 
     def clear(self, configurations: Array) -> Mask:
         """Which of them touch nothing, whatever the limits, (k,)."""
-        clear = np.ones(len(configurations), dtype=bool)
-        each = bytes_of_poses(self._place.robot.joints)
-        for rows in chunks(len(configurations) if self._on else 0, each):
-            clear[rows] = ~self._touching(configurations[rows])
+        if not self._on:
+            return np.ones(len(configurations), dtype=bool)
+        clear = ~self._contacts(configurations)
+        if self._leaving:
+            left = np.flatnonzero(clear)
+            poses = forward(self._place.robot, configurations[left])
+            blocked = self._place.tip.blocked(poses.tip, poses.tool_axis)
+            clear[left] = ~(blocked | self._through(poses_along(poses.tip, poses.tool_axis)))
         return clear
 
     def touched(self, configuration: Array) -> list[str]:
         """What one configuration (joints,) touches: the names of both bodies of each contact."""
-        if not self._on:
-            return []
-        place, found = self._place, []
-        poses = forward(place.robot, configuration[None])
+        pairs = self._contacts.touching(configuration) if self._on else []
+        both = (f"{self._name(one)} and {self._name(other)}" for one, other, _ in pairs)
+        return list(dict.fromkeys(both))
 
-        def name(robot: Robot, body: int) -> str:
-            return "the tool's tip" if body == len(place.robot.bodies) else robot.bodies[body].link
-
-        def alone(robot: Robot) -> list[tuple[str, Robot]]:
-            return [
-                (name(robot, number), replace(robot, bodies=(body,), tested_pairs=()))
-                for number, body in enumerate(robot.bodies)
-            ]
-
-        if place.ground is not None:
-            exempt = place.setup.robot.may_touch_ground
-            for link, body in alone(self._near_ground):
-                if hits_ground(body, body_ends(body, poses), place.ground, exempt, poses)[0]:
-                    found.append(f"{link} and the ground")
-        solids = [
-            (self._near_obstacles, f"obstacle[{number}]", solid)
-            for number, solid in enumerate(place.obstacles)
-        ]
-        for around, what, solid in (*solids, (self._near_object, "the object", place.target)):
-            for link, body in alone(around):
-                if solid.hits(body, body_ends(body, poses), poses)[0]:
-                    found.append(f"{link} and {what}")
-        found += [
-            " and ".join(name(half, body) for body in pair)
-            for half in self._halves
-            for pair in half.tested_pairs
-            if hits_itself(replace(half, tested_pairs=(pair,)), body_ends(half, poses), poses)[0]
-        ]
-        return list(dict.fromkeys(found))
-
-    def _touching(self, configurations: Array) -> Mask:
-        place = self._place
-        poses = forward(place.robot, configurations)
-        hit = np.zeros(len(configurations), dtype=bool)
-        if place.ground is not None:
-            exempt, around = place.setup.robot.may_touch_ground, self._near_ground
-            hit |= hits_ground(around, body_ends(around, poses), place.ground, exempt, poses)
-        if self._leaving:
-            hit |= place.tip.blocked(poses.tip, poses.tool_axis)
-        near = [(self._near_obstacles, solid) for solid in place.obstacles]
-        for around, solid in (*near, (self._near_object, place.target)):
-            left = np.flatnonzero(~hit)
-            hit[left] = solid.hits(around, body_ends(around, poses)[:, :, left], poses.take(left))
-        if self._leaving:
-            left = np.flatnonzero(~hit)
-            hit[left] = self._tip_through_object(poses.take(left))
-        for half in self._halves:
-            left = np.flatnonzero(~hit)
-            hit[left] = hits_itself(half, body_ends(half, poses)[:, :, left], poses.take(left))
-        return hit
-
-    def _tip_through_object(self, poses: Poses) -> Mask:
-        """Whether the tool's axis passes through the object between the tip and the tool's body."""
-        length = self._place.tip.body.length
-        if length <= _TOUCHING:
-            return np.zeros(len(poses.tip), dtype=bool)
-        end = np.array([0.0, 0.0, length - _TOUCHING])
-        axis = Body("tool tip", 0, np.zeros(3), end, _THIN, False)
-        ends = np.stack([poses.tip - far * poses.tool_axis for far in (_TOUCHING, length)])
-        return np.asarray(self._place.target.touched_by(axis, ends))
-
-
-def _with_tip(robot: Robot, tip: Body) -> Robot:
-    """The robot with the region at its tip as one more body of the tool."""
-    number, last = len(robot.bodies), _last(robot)
-    pairs = tuple((i, number) for i, j in robot.tested_pairs if j == last)
-    return replace(robot, bodies=(*robot.bodies, tip), tested_pairs=robot.tested_pairs + pairs)
+    def _name(self, thing: Body | Shape) -> str:
+        if isinstance(thing, Shape):
+            return self._things[id(thing)]
+        return "the tool's tip" if thing is self._tip else thing.link
 
 
 def _last(robot: Robot) -> int | None:

@@ -53,6 +53,9 @@ def motion_of(prepared: PreparedScene) -> Motion:
         if motion.lead_m and not setup.task.stand_off_m:
             message = "only a tool that stands off (task.stand_off_m) goes on beyond its stroke"
             raise InputError(None, "motion.lead_m", message)
+        if motion.lead_m and (motion.transfer_speed_m_per_s or np.inf) < motion.speed_m_per_s:
+            message = "must not be below speed_m_per_s where there is motion.lead_m"
+            raise InputError(None, "motion.transfer_speed_m_per_s", message)
         least = setup.task.contact_radius_m + motion.clearance_m
         if motion.retract_m <= least:
             message = f"must be above {least:g} m, contact radius and clearance together"

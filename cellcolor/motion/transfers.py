@@ -11,6 +11,7 @@ from cellcolor.arrays import Array, Index, Mask, unit
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.contact.engine import Contacts, poses_along
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
 from cellcolor.motion.free_space import FreeSpace
@@ -35,7 +36,8 @@ _LONGER = 10.0  # times the time of a straight move that is blocked; so few turn
 _ALONG = 0.003  # m of the end of a stroke, which say where its lead goes
 _ROOM = 0.999  # of the largest steps, for rounding
 _LEAVING = 0.0025  # m; for so long the tip of a tool that leaves may be near; the judge has 3 mm
-_TIP = Body("tool tip", 0, np.zeros(3), np.zeros(3), 0.0011, False)  # as near; the judge has 1 mm
+_UP = np.array([0.0, 0.0, 1.0])  # however the ball at the tip is turned
+_TIP = Body("tool tip", 1, np.zeros(3), np.zeros(3), 0.0011, False)  # as near; the judge has 1 mm
 _DIGITS = 9  # of joints in rad or m, by which moves are told apart
 
 
@@ -92,6 +94,7 @@ class Transfers:
         self._prepared, self._deadline = prepared, deadline
         self._motion, self._velocities = motion, velocities
         self._leaving = FreeSpace(prepared, 0.0, leaving=True)
+        self._at_object = Contacts([(_TIP, prepared.workplace.target, 0.0)])
         self.home = home_of(prepared, motion)
         # The retreat at home has no length; without a home there is nothing to move from.
         self._at_home = np.empty((0, prepared.robot.joints))
@@ -303,8 +306,7 @@ class Transfers:
         """
         left = np.flatnonzero(DISTANCE * _ROOM * np.arange(1, len(tips) + 1) > _LEAVING)
         drags = np.zeros(len(tips), dtype=bool)
-        ends = np.stack([tips[left], tips[left]])
-        drags[left] = self._prepared.workplace.target.touched_by(_TIP, ends)
+        drags[left] = self._at_object(poses_along(tips[left], np.tile(_UP, (len(left), 1))))
         return drags
 
     def _cut(self, way: Array) -> Array:

@@ -102,6 +102,8 @@ class Verdict:
     def plot(self, path: str | PathLike[str] | None = None) -> cellcolor.Drawing:
         """Draw the plan by segment, or where it is not valid.
 
+        Of a plan that can be beaten the two segments that can be joined are marked.
+
         Args:
             path: a file .html, .png or .svg; None draws without writing, for notebooks.
 
@@ -113,7 +115,8 @@ class Verdict:
             raise InputError(None, "plan", "is a solution; cellcolor.show draws it")
         import cellcolor  # the whole package's face, which only somebody who looks at it needs
 
-        return cellcolor.show(self.surface, path, plan=self.plan)
+        joined = None if self.improvement is None else self.improvement.places
+        return cellcolor.show(self.surface, path, plan=self.plan, marked=joined)
 
     def __str__(self) -> str:
         if self.segments is None:

@@ -5,27 +5,31 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Index
 from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.collision import HalfSpace, segment_distance
+from cellcolor.frontend.contact.movement import HalfSpace
 from cellcolor.frontend.contact.obstacle import Obstacle
+from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.pictures.palette import FAINT, LINES, WARNING
-from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
+from cellcolor.pictures.mesh_picture import eye
+from cellcolor.pictures.palette import FAINT
+from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines, Text
 
+BESIDE = (28, 40)
+"""The heights to look from, degrees, so that arm and part are seen side by side."""
 _AROUND = 20
 _ALONG = 10
 _GRID = 13
-_LINKS = (*LINES[:-1], "#888888")  # shading does not show on black
-Triangles = NDArray[np.int64]
-_Mesh = tuple[Array, Triangles]
+OBSTACLE, BODY, GROUND = "#882255", "#C8C4B0", "#9AA3AF"
+_LINKS = ("#AEB6C2", "#7F8A9B")  # alternating
+_TOOL = "#4A5361"
+_Mesh = tuple[Array, Index]
 
 
 def draw_arm(build: BuildResult, vertex: int, branch: int) -> Picture3D:
@@ -49,27 +53,16 @@ def draw_arm(build: BuildResult, vertex: int, branch: int) -> Picture3D:
     links: dict[str, list[_Mesh]] = {}
     for body in robot.bodies:
         links.setdefault(body.link, []).append(_placed(body, poses))
-    layers = [
-        _layer(link, _LINKS[number % len(_LINKS)], _joined(meshes))
-        for number, (link, meshes) in enumerate(links.items())
-    ]
-    mesh = (build.surface.vertices, build.surface.faces)
-    layers.append(_layer("object", FAINT, mesh))
-    if scene.solid_object is not None:
-        solid = scene.solid_object.surface(scene.folder).placed(scene.placement)
-        layers.append(_layer("collision object", "#999933", (solid.vertices, solid.faces)))
-    size = float(np.ptp(build.surface.vertices, axis=0).max())
-    points, triangles = _capsule(np.zeros(3), np.zeros(3), 0.02 * size)
-    target = build.surface.vertices[vertex]
-    layers.append(_layer(f"vertex {vertex}", WARNING, (points + target, triangles)))
-    if scene.obstacle:
-        meshes = [obstacle_mesh(obstacle, scene.folder) for obstacle in scene.obstacle]
-        obstacles = _joined(meshes)
-        layers.append(_layer("obstacles", "#882255", obstacles))
+    fills = link_fills(robot)
+    layers = [Layer(link, fills[link], *_joined(meshes)) for link, meshes in links.items()]
+    arm = np.concatenate([layer.points for layer in layers])
+    layers.append(Layer("object", FAINT, build.surface.vertices, build.surface.faces))
+    layers += surroundings(build.prepared)
+    target, normal = build.surface.vertices[vertex], build.surface.vertex_normals[vertex]
     ground: tuple[SpaceLines, ...] = ()
     if scene.ground is not None:
         points = np.concatenate([layer.points for layer in layers])
-        ground = (_ground(scene.ground.half_space, points),)
+        ground = (grid(scene.ground.half_space, points),)
     joints = ", ".join(
         f"{1000 * value:.1f} mm" if slides else f"{np.degrees(value):.1f}°"
         for value, slides in zip(configuration, robot.slides, strict=True)
@@ -77,20 +70,46 @@ def draw_arm(build: BuildResult, vertex: int, branch: int) -> Picture3D:
     place = ", ".join(f"{value:.3f}" for value in target)
     return Picture3D(
         title=f"{scene.name}: vertex {vertex}, {build.branches[branch]}",
+        mesh=None,
         layers=tuple(layers),
         lines=ground,
-        texts=(),
+        texts=(Text(f"vertex {vertex}", target, normal),),
         notes=(
             "Collision shapes of the URDF files.",
             f"Joints: {joints}",
             f"Vertex [m]: {place}",
         ),
-        towards=_free_view(robot, poses, build.surface.vertex_normals[vertex]),
+        towards=eye(build.surface, BESIDE, [(target, normal, arm)]),
     )
 
 
-def _layer(name: str, color: str, mesh: _Mesh) -> Layer:
-    return Layer(name, color, *mesh, solid=True)
+def link_fills(robot: Robot) -> dict[str, str]:
+    """The fill of each link with bodies; the tool's is darker."""
+    last = max(min(body.joint, robot.joints) for body in robot.bodies)
+    links = list(dict.fromkeys(body.link for body in robot.bodies))
+    tools = {body.link for body in robot.bodies if body.joint == last}
+    return {
+        link: _TOOL if link in tools else _LINKS[number % len(_LINKS)]
+        for number, link in enumerate(links)
+    }
+
+
+def surroundings(prepared: PreparedScene) -> list[Layer]:
+    """The body of the part and the obstacles, in the world frame."""
+    scene, layers = prepared.scene, []
+    if scene.solid_object is not None:
+        body = scene.solid_object.surface(scene.folder).placed(scene.placement)
+        layers.append(Layer("collision object", BODY, body.vertices, body.faces))
+    if scene.obstacle:
+        meshes = [_obstacle_mesh(each, scene.folder) for each in scene.obstacle]
+        layers.append(Layer("obstacles", OBSTACLE, *_joined(meshes)))
+    return layers
+
+
+def arm_points(robot: Robot, joints: Array) -> Array:
+    """Points (k, 3) of all bodies in a configuration (s,), in the world."""
+    poses = forward(robot, joints[None])
+    return np.concatenate([_placed(body, poses)[0] for body in robot.bodies])
 
 
 def body_mesh(body: Body) -> _Mesh:
@@ -154,13 +173,13 @@ def _turned(start: Array, end: Array, profile: list[tuple[float, float, float]])
     return points, triangles[TriangleMesh(points, triangles).areas > 5e-16]
 
 
-def obstacle_mesh(obstacle: Obstacle, folder: Path) -> _Mesh:
+def _obstacle_mesh(obstacle: Obstacle, folder: Path) -> _Mesh:
     """Points (k, 3) in m and triangles (t, 3) of an obstacle, in the world."""
     points, triangles = obstacle.shell(folder)
     return obstacle.placed(points), triangles
 
 
-def _ground(ground: HalfSpace, points: Array) -> SpaceLines:
+def grid(ground: HalfSpace, points: Array) -> SpaceLines:
     """The part of the ground below everything else as a grid, in pieces that sort by depth."""
     low, high = points.min(axis=0) - 0.05, points.max(axis=0) + 0.05
     x, y = (np.linspace(low[axis], high[axis], _GRID) for axis in (0, 1))
@@ -169,7 +188,7 @@ def _ground(ground: HalfSpace, points: Array) -> SpaceLines:
     grid = np.stack([x, y, (ground.offset_m - nx * x - ny * y) / nz], axis=2)
     along_x = np.stack([grid[:-1], grid[1:]], axis=2).reshape(-1, 2, 3)
     along_y = np.stack([grid[:, :-1], grid[:, 1:]], axis=2).reshape(-1, 2, 3)
-    return SpaceLines("ground", "#AAAAAA", np.concatenate([along_x, along_y]))
+    return SpaceLines("ground", GROUND, np.concatenate([along_x, along_y]))
 
 
 def _joined(meshes: list[_Mesh]) -> _Mesh:
@@ -178,30 +197,3 @@ def _joined(meshes: list[_Mesh]) -> _Mesh:
         np.concatenate([points for points, _ in meshes]),
         np.concatenate([t + first for (_, t), first in zip(meshes, counts, strict=True)]),
     )
-
-
-def _free_view(robot: Robot, poses: Poses, normal: Array) -> Array:
-    """A direction to look from: from above, before the surface, nothing between eye and tool tip.
-
-    Of 24 directions around the vertical the one whose ray from the tip keeps farthest from the
-    arm's bodies, up to 0.15 m; looking across the arm counts as well.
-    """
-    around = np.radians(np.arange(0, 360, 15))
-    rise = np.radians(25)
-    flat = np.stack([np.cos(around), np.sin(around), np.zeros(len(around))], axis=1)
-    rays = np.cos(rise) * flat + np.array([0.0, 0.0, np.sin(rise)])
-    tip = poses.tip[0]
-    away = tip[:2] / max(float(np.linalg.norm(tip[:2])), 1e-9)
-    score = 0.1 * np.abs(flat[:, 0] * away[1] - flat[:, 1] * away[0])
-    # From the side of the tool, and rather from outside than from inside the object.
-    score -= 0.4 * np.abs(rays @ normal - 0.1)
-    # The ray starts a little off the tip, or the tool that carries it would be in the way.
-    starts = tip + 0.05 * rays
-    clearance = np.full(len(rays), 0.15)
-    for body in robot.bodies:
-        rotation, origin = poses.body_rotation[0, body.joint], poses.body_origin[0, body.joint]
-        ends = [np.tile(origin + rotation @ end, (len(rays), 1)) for end in (body.start, body.end)]
-        gap = segment_distance(starts, starts + 3.0 * rays, ends[0], ends[1]) - body.radius
-        clearance = np.minimum(clearance, gap)
-    best: Array = rays[np.argmax(score + clearance)]
-    return best

@@ -25,7 +25,7 @@ def faulty_part(inspection: Inspection) -> Picture3D:
         faces = faces[np.linspace(0, len(faces) - 1, _MOST).astype(np.int64)]
     used, number = np.unique(faces, return_inverse=True)
     corners_of = number.reshape(-1, 3).astype(np.int64)
-    layers = [Layer("part", FAINT, inspection.mesh.points[used], corners_of, solid=True)]
+    layers = [Layer("part", FAINT, inspection.mesh.points[used], corners_of)]
     for (name, corners), fill in zip(inspection.faulty_faces.items(), _FILLS, strict=True):
         if len(corners):
             some = corners[:_MOST_MARKS]
@@ -39,7 +39,12 @@ def faulty_part(inspection: Inspection) -> Picture3D:
     text = "Usable unchanged." if usable else f"Not usable unchanged: {inspection.refusal}"
     notes += textwrap.wrap(text, _WIDTH)
     eye = np.array([1.0, -1.6, 1.1])
-    title = f"{inspection.name}: what is wrong with it" if not usable else inspection.name
     return Picture3D(
-        title, tuple(layers), tuple(lines), (), tuple(notes), eye / np.linalg.norm(eye)
+        title=inspection.name if usable else f"{inspection.name}: what is wrong with it",
+        mesh=None,
+        layers=tuple(layers),
+        lines=tuple(lines),
+        texts=(),
+        notes=tuple(notes),
+        towards=eye / np.linalg.norm(eye),
     )

@@ -1,8 +1,4 @@
-"""A mesh with a class per vertex as a picture: fills, borders, cracks, numbers.
-
-A class owns the barycentric dual of its vertices, as in the decomposition: a triangle with
-different classes at its corners is cut from its center to the middles of its edges.
-"""
+"""A labelled surface with a class for each vertex as a picture: fills, lines, numbers."""
 
 from __future__ import annotations
 
@@ -10,23 +6,12 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Index
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.pictures.palette import INK, WARNING
-from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines, Text
+from cellcolor.pictures.picture import ClassedMesh, Line, Picture3D, Text, VertexClass
 
-Labels = NDArray[np.int64]
-
-
-@dataclass(frozen=True)
-class VertexClass:
-    """A class of vertices: its name for the legend, its fill, and a number to write on it."""
-
-    name: str
-    rgb: str
-    number: str | None = None
+_MOST_NUMBERS = 80  # more would lie on each other
 
 
 @dataclass(frozen=True)
@@ -40,45 +25,55 @@ class SurfaceView:
         borders: (n,) vertex classes between which black lines run; None takes ``labels``.
         cracks: mesh edges to mark, as pairs of vertices.
         notes: lines under the legend.
+        marked: vertices to be pointed at; the borders of their classes are marked as well.
     """
 
     title: str
-    labels: Labels
+    labels: Index
     classes: Sequence[VertexClass]
-    borders: Labels | None = None
+    borders: Index | None = None
     cracks: Collection[tuple[int, int]] = ()
     notes: tuple[str, ...] = ()
+    marked: Sequence[int] = ()
 
 
 def draw_surface(surface: LabelledSurface, view: SurfaceView) -> Picture3D:
     """The surface as the view wants it."""
-    vertices, faces = surface.vertices, surface.faces
     normals = surface.vertex_normals
-    points, triangles, owner = mesh_picture_parts(vertices, faces, view.labels)
-    layers = []
-    for number, own_class in enumerate(view.classes):
-        own = triangles[owner == number]
-        if len(own):
-            used, renumbered = np.unique(own, return_inverse=True)
-            layers.append(
-                Layer(own_class.name, own_class.rgb, points[used], renumbered.reshape(own.shape))
-            )
-    bordered = view.labels if view.borders is None else view.borders
-    segments = _lines(vertices, faces, normals, bordered, set(view.cracks))
+    marks = [
+        Text(f"vertex {vertex}", surface.vertices[vertex], normals[vertex])
+        for vertex in view.marked
+    ]
     return Picture3D(
         title=view.title,
-        layers=tuple(layers),
-        lines=segments,
-        texts=tuple(_numbers(surface, view, normals)),
+        mesh=classed(surface, view),
+        layers=(),
+        lines=(),
+        texts=(*_numbers(surface, view), *marks),
         notes=view.notes,
-        towards=_towards(normals),
+        towards=eye(surface),
     )
 
 
-def mesh_picture_parts(
-    vertices: Array, faces: Labels, labels: Labels
-) -> tuple[Array, Labels, Labels]:
+def classed(surface: LabelledSurface, view: SurfaceView) -> ClassedMesh:
+    """The surface's mesh with the view's classes and lines."""
+    first, second = surface.mesh.edges.T
+    borders = view.labels if view.borders is None else view.borders
+    out = np.isin(view.labels, view.labels[list(view.marked)])
+    lines = np.where(borders[first] != borders[second], Line.BORDER, Line.NONE)
+    differs = view.labels[first] != view.labels[second]
+    lines[differs & (out[first] | out[second])] = Line.MARKED
+    if view.cracks:
+        lines[surface.mesh.marked(view.cracks)] = Line.CRACK
+    of_sides = lines[surface.mesh.edge_of_side].astype(np.uint8)
+    return ClassedMesh(surface.vertices, surface.faces, view.labels, view.classes, of_sides)
+
+
+def mesh_picture_parts(vertices: Array, faces: Index, labels: Index) -> tuple[Array, Index, Index]:
     """Cut a mesh along the borders of its vertex classes.
+
+    A triangle with different classes at its corners is cut from its center to the middles of its
+    sides, as in the decomposition.
 
     Args:
         vertices: (n, 3).
@@ -108,53 +103,26 @@ def mesh_picture_parts(
     )
 
 
-def _lines(
-    vertices: Array,
-    faces: Labels,
-    normals: Array,
-    classes: Labels,
-    cracks: set[tuple[int, int]],
-) -> tuple[SpaceLines, ...]:
-    """Borders and cracks, lifted off the surface by a little so that they stay visible."""
-    ends: dict[str, list[Array]] = {"border": [], "crack": []}
-    edge = float(np.linalg.norm(vertices[faces[:, 0]] - vertices[faces[:, 1]], axis=1).mean())
-    lifted = vertices + 0.03 * edge * normals
-    centers = lifted[faces].mean(axis=1)
-    for start in range(3):
-        a, b = faces[:, start], faces[:, (start + 1) % 3]
-        middles = (lifted[a] + lifted[b]) / 2
-        cracked = np.array(
-            [(i, j) in cracks or (j, i) in cracks for i, j in zip(a, b, strict=True)], dtype=bool
-        )
-        border = (classes[a] != classes[b]) & ~cracked
-        for name, rows in (("border", border), ("crack", cracked)):
-            ends[name].append(np.stack([middles[rows], centers[rows]], axis=1))
-    colors = {"border": INK, "crack": WARNING}
-    return tuple(
-        SpaceLines(name, colors[name], np.concatenate(pieces))
-        for name, pieces in ends.items()
-        if any(map(len, pieces))
-    )
-
-
-def _numbers(surface: LabelledSurface, view: SurfaceView, normals: Array) -> list[Text]:
-    """The number of each class at the vertex deepest inside of it."""
+def _numbers(surface: LabelledSurface, view: SurfaceView) -> list[Text]:
+    """The number of each class, the largest ones first, at the vertex deepest inside of it."""
     labels = view.labels
     depth = _depth(surface, labels)
+    sizes = np.bincount(labels, minlength=len(view.classes))
+    numbered = [k for k in np.argsort(-sizes) if sizes[k] and view.classes[k].number is not None]
     texts = []
-    for label, own_class in enumerate(view.classes):
+    for label in sorted(numbered[:_MOST_NUMBERS]):
         own = np.flatnonzero(labels == label)
-        if own_class.number is None or not len(own):
-            continue
         deepest = own[depth[own] == depth[own].max()]
         middle = surface.vertices[own].mean(axis=0)
         offsets = np.linalg.norm(surface.vertices[deepest] - middle, axis=1)
         vertex = deepest[np.argmin(offsets)]
-        texts.append(Text(own_class.number, surface.vertices[vertex], normals[vertex]))
+        normal = surface.vertex_normals[vertex]
+        number = str(view.classes[label].number)
+        texts.append(Text(number, surface.vertices[vertex], normal, int(label)))
     return texts
 
 
-def _depth(surface: LabelledSurface, labels: Labels) -> Labels:
+def _depth(surface: LabelledSurface, labels: Index) -> Index:
     """Mesh edges from each vertex to the nearest border of its class or of the mesh."""
     first, second = surface.mesh.edges.T
     depth = np.full(len(labels), -1, dtype=np.int64)
@@ -172,17 +140,34 @@ def _depth(surface: LabelledSurface, labels: Labels) -> Labels:
     return depth
 
 
-def _towards(normals: Array) -> Array:
-    """Where to look from: before the outside of the surface, and from above rather than flat."""
-    mean = normals.mean(axis=0)
-    flat = np.array([mean[0], mean[1], 0.0])
-    if np.linalg.norm(flat) < 0.2:
-        flat = np.array([0.5, -0.866, 0.0])
-    flat /= np.linalg.norm(flat)
-    upright = float(np.linalg.norm(mean)) > 0.2
-    elevation = np.arcsin(mean[2] / np.linalg.norm(mean)) if upright else np.radians(30)
-    elevation = np.clip(elevation, np.radians(-75), np.radians(75))
-    if abs(elevation) < np.radians(20):
-        elevation = np.radians(20)
-    towards: Array = np.cos(elevation) * flat + np.array([0.0, 0.0, np.sin(elevation)])
-    return towards
+def eye(
+    surface: LabelledSurface,
+    rises: Sequence[float] = (28, 40, 65, -30),
+    seen_past: Sequence[tuple[Array, Array, Array]] = (),
+) -> Array:
+    """A unit vector from the scene to the eye, so that most of the part's outside is seen.
+
+    Of 24 directions around the vertical. Those in which an arm at the origin hides the part, or the
+    part the arm, lose points, and so do those from below.
+
+    Args:
+        rises: the heights to look from, degrees.
+        seen_past: places (3,) that are to be seen, each with its normal (3,) and with points
+            (k, 3) of an arm that may hide it.
+    """
+    normals, middle = surface.vertex_normals, surface.vertices.mean(axis=0)
+    away = middle[:2] / max(float(np.linalg.norm(middle[:2])), 1e-9)
+    around = np.tile(np.radians(np.arange(0, 360, 15)), len(rises))
+    rise = np.repeat(np.radians(rises), 24)
+    flat = np.stack([np.cos(around), np.sin(around)], axis=1)
+    eyes = np.column_stack([np.cos(rise)[:, None] * flat, np.sin(rise)])
+    seen = np.maximum(eyes @ normals.T, 0).mean(axis=1)
+    score = seen - 0.15 * np.abs(flat @ away) + 0.05 * (flat @ away) - 0.2 * (rise < 0)
+    for place, normal, points in seen_past:
+        ways = points - place
+        along = ways @ eyes.T
+        aside = (ways**2).sum(axis=1, keepdims=True) - along**2
+        hidden = ((along > 0.1) & (aside < 0.06**2)).any(axis=0) | (eyes @ normal < 0.1)
+        score -= hidden / len(seen_past)
+    best: Array = eyes[np.argmax(score)]
+    return best

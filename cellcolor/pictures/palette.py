@@ -1,14 +1,17 @@
-"""Colors that people with color-vision deficiencies can tell apart.
+"""What things are painted with, told apart also by readers with color-vision deficiencies.
 
-If there are more things to draw than colors in a palette, colors are used again. So every picture
-also has numbers or names.
+A posture (a color of the surface) has one paint in every picture of a scene: its place in the
+scene's list of colors decides which. If there are more postures than paints, paints repeat, so
+every picture also has numbers or names.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Set
+from collections.abc import Iterable, Sequence
 
-AREAS = (
+import numpy as np
+
+PAINTS = (
     "#77AADD",
     "#EE8866",
     "#EEDD88",
@@ -17,12 +20,20 @@ AREAS = (
     "#99DDFF",
     "#AAAA00",
     "#BBCC33",
+    "#B59BD6",
+    "#C9A27A",
+    "#7FB7BE",
+    "#E3A6DE",
+    "#F2B872",
+    "#93A8C6",
+    "#D9909E",
+    "#A8D5A2",
 )
-"""For areas: light enough for black text. These are the colors of "light" in Paul Tol, Colour
-Schemes, 2021, without its grey."""
+"""For postures: light enough for black text. The first eight are the colors of "light" in Paul Tol,
+Colour Schemes, 2021, without its grey; the others are as light."""
 
 LINES = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#000000")
-"""For lines and small pieces (Okabe and Ito, Color Universal Design, 2008)."""
+"""For curves of plots and small pieces (Okabe and Ito, Color Universal Design, 2008)."""
 
 REASONS = (
     "#CC6677",
@@ -47,22 +58,17 @@ GREY = "#AAAAAA"
 INK = "#222222"
 """Nearly black, for borders and text."""
 WARNING = "#CC3311"
-"""Red, for cracks and for a vertex that is picked out."""
+"""Red, for cracks, faults and what is picked out."""
 
 
-def assign(neighbors: Mapping[int, Set[int]]) -> list[str]:
-    """A fill for each area 0, 1, …; neighbors differ as long as there are enough fills.
+def paints_of(colors: Sequence[str]) -> dict[str, str]:
+    """The paint of each color of a surface or instance, by its name, like ``#77AADD``."""
+    return {name: PAINTS[number % len(PAINTS)] for number, name in enumerate(colors)}
 
-    No fill is used twice unless there are more areas than fills.
 
-    Args:
-        neighbors: the areas next to each area; every area is a key.
-    """
-    uses = [0] * len(AREAS)
-    chosen: dict[int, int] = {}
-    for area in sorted(neighbors):
-        near = {chosen[other] for other in neighbors[area] if other in chosen}
-        best = min(range(len(AREAS)), key=lambda c: (c in near, uses[c], c))
-        uses[best] += 1
-        chosen[area] = best
-    return [AREAS[chosen[area]] for area in sorted(chosen)]
+def mixed(paints: Iterable[str]) -> str:
+    """The mean of paints, for what can be in any of them, paler the more they are."""
+    parts = [[int(paint[at : at + 2], 16) for at in (1, 3, 5)] for paint in paints] or [[255] * 3]
+    mean = np.mean(parts, axis=0)
+    pale = mean + (255 - mean) * 0.5 * (1 - 1 / len(parts))
+    return "#" + "".join(f"{round(part):02X}" for part in pale)

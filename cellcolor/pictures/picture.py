@@ -6,12 +6,72 @@ here (docs/semantics.md, section 1).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Index
+from cellcolor.pictures.palette import INK, WARNING
+
+
+@dataclass(frozen=True)
+class VertexClass:
+    """A class of vertices: its name for the legend, its fill, and a number to write on it."""
+
+    name: str
+    rgb: str
+    number: str | None = None
+
+
+class Line(IntEnum):
+    """What runs over a mesh between two vertices that an edge joins."""
+
+    NONE = 0
+    BORDER = 1
+    CRACK = 2
+    MARKED = 3
+
+    @property
+    def text(self) -> str:
+        """What the legend says."""
+        return ("", "border", "crack", "border of a marked segment")[self]
+
+    @property
+    def rgb(self) -> str:
+        """``#RRGGBB``."""
+        return ("", INK, WARNING, "#AA0077")[self]
+
+
+@dataclass(frozen=True)
+class ClassedMesh:
+    """A mesh with a class for each vertex, which fills the vertex's barycentric dual.
+
+    Attributes:
+        points: (n, 3) in m.
+        faces: (m, 3) int64 rows of ``points``, counter-clockwise seen from outside.
+        labels: (n,) the class of each vertex, an index of ``classes``.
+        classes: those without a vertex are left out of the legend.
+        lines: (m, 3) uint8 :class:`Line`; number k is between the corners k and k + 1 of a face.
+    """
+
+    points: Array
+    faces: Index
+    labels: Index
+    classes: Sequence[VertexClass]
+    lines: NDArray[np.uint8]
+
+    @property
+    def legend(self) -> list[tuple[str, str, Line]]:
+        """Name and fill of the classes that there are, then of the kinds of lines."""
+        used = [self.classes[number] for number in np.unique(self.labels)]
+        kinds = [Line(kind) for kind in np.unique(self.lines) if kind]
+        return [
+            *((own.name, own.rgb, Line.NONE) for own in used),
+            *((kind.text, kind.rgb, kind) for kind in kinds),
+        ]
 
 
 @dataclass(frozen=True)
@@ -23,14 +83,12 @@ class Layer:
         rgb: ``#RRGGBB``.
         points: (n, 3) in m.
         triangles: (m, 3) int64 rows of ``points``, counter-clockwise seen from outside.
-        solid: shade it by its direction to the light; what is flat keeps the fill of the legend.
     """
 
     name: str
     rgb: str
     points: Array
     triangles: NDArray[np.int64]
-    solid: bool = False
 
 
 @dataclass(frozen=True)
@@ -44,11 +102,16 @@ class SpaceLines:
 
 @dataclass(frozen=True)
 class Text:
-    """A short text on a surface, at a place (3,) with an outward unit normal (3,)."""
+    """A short text on a surface, at a place (3,) with an outward unit normal (3,).
+
+    Attributes:
+        label: the class whose number it is; None for a mark that points at this place.
+    """
 
     text: str
     at: Array
     outward: Array
+    label: int | None = None
 
 
 @dataclass(frozen=True)
@@ -57,19 +120,28 @@ class Picture3D:
 
     Attributes:
         title: one line.
-        layers: classes of vertices, and solids.
-        lines: borders, cracks, the ground.
-        texts: numbers on the surface.
+        mesh: the surface with classes, if there is one.
+        layers: solids.
+        lines: edges of a part, the ground.
+        texts: numbers on the surface, and marks.
         notes: lines under the legend.
         towards: (3,) unit vector from the scene to the eye.
     """
 
     title: str
+    mesh: ClassedMesh | None
     layers: tuple[Layer, ...]
     lines: tuple[SpaceLines, ...]
     texts: tuple[Text, ...]
     notes: tuple[str, ...]
     towards: Array
+
+    @property
+    def legend(self) -> list[tuple[str, str]]:
+        """Name and fill of each thing that is drawn."""
+        things = [(layer.name, layer.rgb) for layer in self.layers]
+        things += [(line.name, line.rgb) for line in self.lines]
+        return things if self.mesh is None else [one[:2] for one in self.mesh.legend] + things
 
 
 @dataclass(frozen=True)
@@ -108,3 +180,8 @@ class Picture2D:
     outlines: tuple[Outline, ...]
     texts: tuple[tuple[str, Array, float], ...]
     notes: tuple[str, ...]
+
+    @property
+    def legend(self) -> list[tuple[str, str]]:
+        """Name and color of each kind of line."""
+        return list({line.name: (line.name, line.rgb) for line in self.lines}.values())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 
 import matplotlib as mpl
@@ -15,8 +14,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from cellcolor.arrays import Array
 from cellcolor.data.plot import Plot
-from cellcolor.files.writing import MARKER
 from cellcolor.pictures.palette import FAINT, GREY, INK, LINES
+from cellcolor.pictures.static import saved
 from cellcolor.questions.front import Front
 from cellcolor.questions.placements import PlacedMinimum, PlacementMap
 
@@ -43,7 +42,7 @@ def render_plot(plot: Plot, kind: str) -> bytes:
         figure.legend(loc="outside right upper", frameon=False, fontsize=8)
         if plot.note:
             figure.supxlabel(plot.note, fontsize=7, x=0.01, ha="left")
-        return _saved(figure, kind)
+        return saved(figure, kind)
 
 
 def _draw(axes: Axes, plot: Plot) -> None:
@@ -109,7 +108,7 @@ def render_front(front: Front, kind: str) -> bytes:
         if not front.proved_for_surface:
             note += " Other color: not proved to be the most, for any division of the surface."
         figure.supxlabel(note, fontsize=7, x=0.01, ha="left")
-        return _saved(figure, kind)
+        return saved(figure, kind)
 
 
 def render_map(
@@ -148,7 +147,7 @@ def render_map(
         if len(tiled.ranges) == 2:
             note += " +: where it stands. Numbers: the best placements."
         figure.supxlabel(note, fontsize=7, x=0.01, ha="left")
-        return _saved(figure, kind)
+        return saved(figure, kind)
 
 
 def _curve(axes: Axes, tiled: PlacementMap, values: Array, title: str) -> None:
@@ -201,11 +200,3 @@ def _figure(count: int) -> tuple[Figure, Sequence[Axes]]:
     figure = Figure(figsize=(8, 5) if count == 1 else (11, 5), dpi=150, layout="constrained")
     FigureCanvasAgg(figure)
     return figure, [figure.add_subplot(1, count, number + 1) for number in range(count)]
-
-
-def _saved(figure: Figure, kind: str) -> bytes:
-    """A figure's file, which says by what it was made and not when."""
-    stream = io.BytesIO()
-    metadata = {"Creator": MARKER} | ({"Date": None} if kind == "svg" else {})
-    figure.savefig(stream, format=kind, metadata=metadata)
-    return stream.getvalue()

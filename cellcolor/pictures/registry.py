@@ -14,6 +14,7 @@ A picture is a function. The names of its parameters say what it is drawn of:
 ``color``          the number of a color of the surface
 ``branch``         the number of an inverse-kinematic branch
 ``vertex``         the index of a vertex of the surface
+``marked``         indices of vertices of the plan that are pointed at
 =================  =============================================================================
 
 A parameter with a default is passed only where there is such a thing.

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
@@ -14,14 +15,14 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-from mpl_toolkits.mplot3d.axes3d import Axes3D
+from matplotlib.patheffects import withStroke
 
 from cellcolor.arrays import Array
 from cellcolor.files.writing import MARKER
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.pictures.palette import INK
-from cellcolor.pictures.picture import Layer, Picture2D, Picture3D
+from cellcolor.pictures.mesh_picture import mesh_picture_parts
+from cellcolor.pictures.palette import INK, WARNING
+from cellcolor.pictures.picture import ClassedMesh, Line, Picture2D, Picture3D, Text
 
 _LIGHT = np.array([0.3, -0.5, 0.81])
 _SMALLEST = 3.5
@@ -43,26 +44,53 @@ def render(picture: Picture2D | Picture3D, kind: str) -> bytes:
     with mpl.rc_context(_STYLE):
         figure = Figure(figsize=(11, 7), dpi=150)
         FigureCanvasAgg(figure)
-        legend = (
-            _plane(figure, picture) if isinstance(picture, Picture2D) else _space(figure, picture)
-        )
+        axes = figure.add_axes((0.01, 0.02, 0.62, 0.91))
+        _draw(axes, picture)
         figure.suptitle(picture.title, x=0.02, ha="left", fontsize=12)
-        _side(figure, legend, picture.notes)
-        stream = io.BytesIO()
-        metadata = {"Creator": MARKER} | ({"Date": None} if kind == "svg" else {})
-        figure.savefig(stream, format=kind, metadata=metadata)
+        _side(figure, picture)
+        return saved(figure, kind)
+
+
+def render_drawing(picture: Picture2D) -> bytes:
+    """An SVG of the drawing alone, for a page that has title, legend and notes itself."""
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(7, 7))
+        FigureCanvasAgg(figure)
+        _draw(figure.add_axes((0.0, 0.0, 1.0, 1.0)), picture)
+        return saved(figure, "svg")
+
+
+def saved(figure: Figure, kind: str) -> bytes:
+    """A figure's file, which says by what it was made and not when."""
+    stream = io.BytesIO()
+    metadata = {"Creator": MARKER} | ({"Date": None} if kind == "svg" else {})
+    figure.savefig(stream, format=kind, metadata=metadata)
     return stream.getvalue()
 
 
-def _side(figure: Figure, handles: Sequence[Patch | Line2D], notes: Sequence[str]) -> None:
+def _draw(axes: Axes, picture: Picture2D | Picture3D) -> None:
+    axes.set_axis_off()
+    axes.set_aspect("equal", adjustable="datalim")
+    if isinstance(picture, Picture2D):
+        _plane(axes, picture)
+    else:
+        _space(axes, picture)
+    axes.autoscale_view()
+
+
+def _side(figure: Figure, picture: Picture2D | Picture3D) -> None:
     """Legend and notes to the right of the drawing."""
-    columns = 1 + (len(handles) > 32)
+    thin = {line.name for line in picture.lines} | {kind.text for kind in Line}
+    dashed = {line.name for line in picture.lines if getattr(line, "dashed", False)}
+    handles: list[Patch | Line2D] = []
+    for name, rgb in picture.legend:
+        # Matplotlib leaves labels with an underscore in front out of its legends.
+        label = f" {name}" if name.startswith("_") else name
+        look = "--" if name in dashed else "-"
+        line = Line2D([], [], color=rgb, linestyle=look, label=label)
+        handles.append(line if name in thin else Patch(color=rgb, label=label))
+    left, columns = 0.64, 1 + (len(handles) > 32)
     size = 8 if len(handles) <= 24 else 6
-    # Matplotlib leaves labels with an underscore in front out of its legends.
-    for handle in handles:
-        if str(handle.get_label()).startswith("_"):
-            handle.set_label(f" {handle.get_label()}")
-    left = 0.64
 
     def legend(size: float) -> Legend:
         place = {"loc": "upper left", "bbox_to_anchor": (left, 0.93)}
@@ -74,92 +102,113 @@ def _side(figure: Figure, handles: Sequence[Patch | Line2D], notes: Sequence[str
     if width > room:  # long names would be cut off at the edge
         drawn.remove()
         legend(max(_SMALLEST, size * room / width))
-    figure.text(0.65, 0.03, "\n".join(notes), fontsize=7, va="bottom")
+    figure.text(0.65, 0.03, "\n".join(picture.notes), fontsize=7, va="bottom")
 
 
-def _space(figure: Figure, picture: Picture3D) -> list[Patch | Line2D]:
-    axes = figure.add_axes((0.0, 0.02, 0.64, 0.92), projection="3d")
-    assert isinstance(axes, Axes3D)
-    points = np.concatenate([layer.points for layer in picture.layers])
-    # One collection for all: Matplotlib sorts by depth only within a collection, and sorts
-    # colors along, but no widths.
-    corners: list[Array] = []
-    fills: list[Array] = []
-    inks: list[Array] = []
-    for layer in picture.layers:
-        shades = _shades(layer)
-        corners.append(layer.points[layer.triangles])
-        fills.append(shades)
+def _space(axes: Axes, picture: Picture3D) -> None:
+    """Everything seen in parallel from the picture's direction, what is nearer drawn later."""
+    z = picture.towards
+    x = np.cross([0.0, 0.0, 1.0] if abs(z[2]) < 0.999 else [0.0, 1.0, 0.0], z)
+    x /= np.linalg.norm(x)
+    flat, corners, fills, widths = np.array([x, np.cross(z, x)]), [], [], []
+    everything = [(layer.points[layer.triangles], layer.rgb) for layer in picture.layers]
+    lines = [(line.ends, line.rgb, 0.8) for line in picture.lines]
+    if picture.mesh is not None:
+        everything += _areas(picture.mesh)
+        lines += _on_mesh(picture.mesh)
+    for triangles, rgb in everything:
+        corners.append(triangles)
+        fills.append(_shaded(triangles, rgb))
         # A line in the fill's own color closes the gaps that anti-aliasing leaves.
-        inks.append(shades)
-    # Seen in parallel, a shift towards the eye moves lines before their surface and nothing else.
-    nearer = 0.03 * float(np.ptp(points, axis=0).max()) * picture.towards
-    for line in picture.lines:
-        corners.append(line.ends[:, [0, 1, 1]] + nearer)
-        color = np.tile([*to_rgb(line.rgb), 1.0], (len(line.ends), 1))
-        fills.append(color)
-        inks.append(color)
-    faces = Poly3DCollection(
-        list(np.concatenate(corners)),
-        facecolors=np.concatenate(fills),
-        edgecolors=np.concatenate(inks),
-        linewidths=0.8,
+        widths.append(np.full(len(triangles), 0.4))
+    span = float(max(np.ptp(part.reshape(-1, 3), axis=0).max() for part in corners))
+    for ends, rgb, width in lines:  # moved towards the eye, before the surface that they are on
+        corners.append(ends[:, [0, 1, 1]] + 0.03 * span * z)
+        fills.append(np.tile(to_rgb(rgb), (len(ends), 1)))
+        widths.append(np.full(len(ends), width))
+    pieces = np.concatenate(corners)
+    order = np.argsort((pieces @ z).mean(axis=1), kind="stable")
+    colors = np.concatenate(fills)[order]
+    faces = PolyCollection(
+        pieces[order] @ flat.T,
+        facecolors=colors,
+        edgecolors=colors,
+        linewidths=np.concatenate(widths)[order],
     )
     faces.set_gid("faces")
-    axes.add_collection3d(faces)
-    _frame(axes, points, picture.towards)
+    axes.add_collection(faces)
     for text in picture.texts:
-        # Text is always drawn on top: leave out what lies on the far side.
-        if float(text.outward @ picture.towards) > 0:
-            axes.text(*text.at.tolist(), text.text, fontsize=8, ha="center", va="center")
-    handles: list[Patch | Line2D] = [
-        Patch(color=layer.rgb, label=layer.name) for layer in picture.layers
+        if float(text.outward @ z) > 0:  # what lies on the far side would be on top as well
+            _written(axes, text, flat @ text.at)
+    _scale(axes, flat, span)
+
+
+def _written(axes: Axes, text: Text, at: Array) -> None:
+    """A number on its area, or a mark beside its place."""
+    look: dict[str, Any] = {"ha": "center", "va": "center", "textcoords": "offset points"}
+    if text.label is None:
+        look["bbox"] = {"boxstyle": "round,pad=0.2", "fc": "white", "ec": WARNING}
+        look["arrowprops"] = {"arrowstyle": "-", "color": WARNING, "shrinkB": 0}
+    axes.annotate(text.text, tuple(at), xytext=(0, 16 if text.label is None else 0), **look)
+
+
+def _areas(mesh: ClassedMesh) -> list[tuple[Array, str]]:
+    """The triangles (t, 3, 3) of each class, with its fill."""
+    points, triangles, owner = mesh_picture_parts(mesh.points, mesh.faces, mesh.labels)
+    parts = [points[triangles[owner == number]] for number in range(len(mesh.classes))]
+    return [(own, one.rgb) for own, one in zip(parts, mesh.classes, strict=True) if len(own)]
+
+
+def _on_mesh(mesh: ClassedMesh) -> list[tuple[Array, str, float]]:
+    """The pieces (k, 2, 3) of each kind of line, from the middle of a side to the face's center."""
+    corners = mesh.points[mesh.faces]
+    middles = (corners + np.roll(corners, -1, axis=1)) / 2
+    centers = np.broadcast_to(corners.mean(axis=1, keepdims=True), middles.shape)
+    pieces = np.stack([middles, centers], axis=2)
+    return [
+        (pieces[mesh.lines == kind], kind.rgb, 2.4 if kind is Line.MARKED else 1.0)
+        for kind in Line
+        if kind
     ]
-    handles += [
-        Line2D([], [], color=line.rgb, linewidth=0.8, label=line.name) for line in picture.lines
-    ]
-    return handles
 
 
-def _frame(axes: Axes3D, points: Array, towards: Array) -> None:
-    """Axes in meters, the same scale on each, seen from ``towards``."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    margin = 0.02 * float((high - low).max())
-    low, high = low - margin, high + margin
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
-    axes.set_box_aspect(tuple((high - low).tolist()), zoom=0.9)
-    axes.set_proj_type("ortho")
-    shares = (high - low) / (high - low).max()
-    for axis, share, middle in zip("xyz", shares.tolist(), (low + high) / 2, strict=True):
-        if share < 0.1:  # two labels would lie on each other
-            axes.set(**{f"{axis}ticks": [round(float(middle), 3)]})
-        else:
-            axes.locator_params(axis=axis, nbins=max(2, round(6 * share)))
-    elevation = np.degrees(np.arcsin(towards[2]))
-    axes.view_init(
-        elev=float(elevation), azim=float(np.degrees(np.arctan2(towards[1], towards[0])))
-    )
+def _shaded(triangles: Array, rgb: str) -> Array:
+    """A color (m, 3) for each triangle."""
+    corners = np.arange(3 * len(triangles)).reshape(-1, 3)
+    normals = TriangleMesh(triangles.reshape(-1, 3), corners).triangle_normals
+    light = 0.86 + 0.14 * (np.nan_to_num(normals) @ _LIGHT)
+    shaded: Array = np.array(to_rgb(rgb)) * light[:, None]
+    return shaded
 
 
-def _shades(layer: Layer) -> Array:
-    """A color (m, 4) for each triangle."""
-    color = np.tile(np.array([*to_rgb(layer.rgb), 1.0]), (len(layer.triangles), 1))
-    if layer.solid:
-        normals = np.nan_to_num(TriangleMesh(layer.points, layer.triangles).triangle_normals)
-        color[:, :3] *= 0.775 + 0.225 * (normals @ _LIGHT)[:, None]
-    return color
+def _scale(axes: Axes, flat: Array, span: float) -> None:
+    """The directions of x, y and z, and a bar of a round length, below on the left."""
+    length = 10 ** np.floor(np.log10(span / 3))
+    for (across, up), name in zip(0.05 * flat.T, "xyz", strict=True):
+        axes.annotate(
+            "", (0.08 + across, 0.07 + up), (0.08, 0.07), "axes fraction",
+            arrowprops={"arrowstyle": "-|>", "color": INK},
+        )  # fmt: skip
+        axes.text(
+            0.08 + 1.4 * across, 0.07 + 1.4 * up, name, ha="center", va="center",
+            transform=axes.transAxes,
+        )  # fmt: skip
+    low = axes.get_xaxis_transform()  # x in meters, y as a share of the axes
+    axes.autoscale_view()
+    axes.apply_aspect()
+    left, right = axes.get_xlim()
+    start = left + 0.18 * (right - left)
+    axes.plot([start, start + length], [0.04, 0.04], color=INK, linewidth=2, transform=low)
+    axes.text(start, 0.05, f"{length:g} m", transform=low)
 
 
-def _plane(figure: Figure, picture: Picture2D) -> list[Patch | Line2D]:
-    axes = figure.add_axes((0.01, 0.02, 0.63, 0.92))
-    axes.set_axis_off()
-    axes.set_aspect("equal")
+def _plane(axes: Axes, picture: Picture2D) -> None:
     lines = LineCollection(
         [curve.points for curve in picture.lines],
         colors=[curve.rgb for curve in picture.lines],
         linewidths=[curve.width for curve in picture.lines],
         linestyles=[(0, (3, 2)) if curve.dashed else "solid" for curve in picture.lines],
+        path_effects=[withStroke(linewidth=3.0, foreground="#777777")],  # light on white
     )
     lines.set_gid("edges")
     axes.add_collection(lines)
@@ -175,9 +224,3 @@ def _plane(figure: Figure, picture: Picture2D) -> list[Patch | Line2D]:
     for text, at, size in picture.texts:
         x, y = at.tolist()
         axes.text(x, y, text, fontsize=size, ha="center", va="center", zorder=3)
-    axes.autoscale_view()
-    kinds = {curve.name: curve for curve in picture.lines}
-    return [
-        Line2D([], [], color=c.rgb, linestyle="--" if c.dashed else "-", label=name)
-        for name, c in kinds.items()
-    ]

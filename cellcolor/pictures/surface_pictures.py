@@ -7,10 +7,12 @@ is refined where necessary.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from cellcolor.arrays import Index
 from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.candidate_table import VALID, CandidateTable
 from cellcolor.data.cells_and_edges import OUTSIDE
@@ -21,72 +23,70 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count, listed, segments_and_lift_offs
 from cellcolor.decomposition import Decomposition
 from cellcolor.errors import InputError
-from cellcolor.painting.paint import paint
-from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, draw_surface
-from cellcolor.pictures.palette import AREAS, FAINT, GREY, REASONS, WARNING, assign
-from cellcolor.pictures.picture import Picture3D
+from cellcolor.painting.paint import Painted, paint
+from cellcolor.pictures.mesh_picture import SurfaceView, draw_surface
+from cellcolor.pictures.palette import (
+    FAINT,
+    GREY,
+    PAINTS,
+    REASONS,
+    WARNING,
+    mixed,
+    paints_of,
+)
+from cellcolor.pictures.picture import Picture3D, VertexClass
 
-_CUT = "#666666"
+CUT, OTHERS = "#666666", "#F3F1EA"
+_MOST_MARKED = 8  # vertices of a plan that is not valid
 
 
 def draw_cells(surface: LabelledSurface, decomposition: Decomposition) -> Picture3D:
-    """Every cell in its own fill; with many cells, fills repeat but never between neighbors."""
-    instance = decomposition.instance
-    cells = np.array(decomposition.vertex_cell, dtype=np.int64)
-    number = len(instance.cells)
-    labels = np.where(cells == OUTSIDE, bare_labels(surface, number), cells)
-    share = shares(surface, labels, number + 2)
-    fills = assign(neighboring(surface, cells, number))
+    """Every cell in the paint of its color; of several colors their paints are mixed."""
+    cells = decomposition.instance.cells
     classes = [
         VertexClass(
-            f"cell {cell.id} {{{', '.join(map(str, cell.colors))}}}  {share[cell.id]}",
-            fill,
+            f"cell {cell.id} {{{', '.join(map(str, cell.colors))}}}",
+            fill_of(surface, cell.colors),
             str(cell.id),
         )
-        for cell, fill in zip(instance.cells, fills, strict=True)
+        for cell in cells
     ]
-    classes += bare_classes(*share[number:])
-    notes = ["Cell: {available colors}, share of the surface."]
-    if number > len(AREAS):
-        notes.append("Fills repeat: the numbers identify the cells.")
-    notes += [f"{number}: {name}" for number, name in enumerate(surface.colors)]
-    title = f"{surface.name}: {count(number, 'cell')}"
-    cracks = surface.crack_colors
-    return draw_surface(
-        surface, SurfaceView(title, labels, classes, cracks=cracks, notes=tuple(notes))
-    )
+    title = f"{surface.name}: {count(len(cells), 'cell')}"
+    view = with_shares(surface, title, np.array(decomposition.vertex_cell, dtype=np.int64), classes)
+    notes = ("Cell: {available colors}, share of the surface.", *surface_notes(surface))
+    notes += tuple(f"{number}: {name}" for number, name in enumerate(surface.colors))
+    return draw_surface(surface, replace(view, cracks=surface.crack_colors, notes=notes))
 
 
 def draw_color(surface: LabelledSurface, color: int) -> Picture3D:
     """Where one color is available, and where only others are."""
-    covered = np.array(
-        [0 if color in own else 1 if own else 2 for own in surface.vertex_colors], dtype=np.int64
-    )
-    labels = np.where(covered == 2, bare_labels(surface, 2), covered)
-    share = shares(surface, labels, 4)
     name = surface.colors[color]
-    classes = [
-        VertexClass(f"{name}  {share[0]}", AREAS[0]),
-        VertexClass(f"other colors only  {share[1]}", AREAS[2]),
-        *bare_classes(*share[2:]),
-    ]
+    labels = [0 if color in own else 1 if own else -1 for own in surface.vertex_colors]
+    view = with_shares(
+        surface,
+        f"{surface.name}: color {color}, {name}",
+        np.array(labels, dtype=np.int64),
+        [
+            VertexClass(name, fill_of(surface, [color])),
+            VertexClass("other colors only", OTHERS),
+        ],
+    )
     cracks = [pair for pair, colors in surface.crack_colors.items() if color in colors]
-    note = "Shares of the surface. Cracks are those of this color."
-    title = f"{surface.name}: color {color}, {name}"
-    return draw_surface(surface, SurfaceView(title, labels, classes, cracks=cracks, notes=(note,)))
+    notes = ("Shares of the surface. Cracks are those of this color.",)
+    return draw_surface(surface, replace(view, cracks=cracks, notes=notes))
 
 
 def draw_segments(
     surface: LabelledSurface, decomposition: Decomposition, solution: Solution
 ) -> Picture3D:
-    """Every segment of a valid solution in its own fill."""
+    """Every segment of a valid solution in the paint of its color."""
     return draw_surface(*by_solution(surface, decomposition, solution))
 
 
 def by_solution(
     surface: LabelledSurface, decomposition: Decomposition, solution: Solution
 ) -> tuple[LabelledSurface, SurfaceView]:
-    """The surface to draw a solution on, and every segment there in its own fill.
+    """The surface to draw a solution on, and every segment there in the paint of its color.
 
     Args:
         decomposition: its topological graph.
@@ -114,18 +114,21 @@ def by_solution(
         labels[np.isin(cells, divided)] = segments
     color = {sub.segment: sub.color for cell in solution.cells or () for sub in cell.subcells}
     share = shares_of(instance, solution)
-    classes = segment_classes(
-        [instance.colors[color[number]] for number in range(segments)],
-        [percent(*own) for own in share.segments],
-        assign(neighboring(fine, labels, segments)),
-    )
-    classes.append(VertexClass("cut between segments", _CUT))
-    classes += bare_classes(*bare)
-    notes = [f"Status: {solution.status}. Shares of the surface. Black lines: borders of cells."]
+    classes = [
+        replace(one, name=f"{one.name}, {percent(*own)}")
+        for one, own in zip(
+            segment_classes(surface, [color[number] for number in range(segments)]),
+            share.segments,
+            strict=True,
+        )
+    ]
+    classes.append(VertexClass("cut between segments", CUT))
+    notes = [
+        f"Status: {solution.status}. Shares of the surface. Black lines: borders of cells.",
+        *surface_notes(surface),
+    ]
     if not share.certain:
         notes.append("Ranges: the cut through a divided cell may run anywhere.")
-    if segments > len(AREAS):
-        notes.append("Fills repeat: the numbers identify the segments.")
     if divided:
         named = f"{'cell' if len(divided) == 1 else 'cells'} {listed(divided)}"
         drawn = "One possible cut is drawn, also in black."
@@ -135,7 +138,7 @@ def by_solution(
     view = SurfaceView(
         f"{surface.name}: {segments_and_lift_offs(segments)}",
         labels,
-        classes,
+        classes + bare_classes(*bare),
         # Borders separate these numbers: one for each pair of cell and segment, so that cuts are
         # drawn as well.
         borders=cells[stands_for] * (int(labels.max(initial=0)) + 1) + labels,
@@ -145,8 +148,17 @@ def by_solution(
     return fine, view
 
 
-def draw_plan(surface: LabelledSurface, plan: Plan) -> Picture3D:
+def by_segment(painted: Painted) -> SurfaceView:
+    """Each segment of a painting in the paint of its color."""
+    count = int(painted.segment_of.max(initial=-1)) + 1  # more than are left if some are merged
+    return _of_plan(painted.surface, painted.plan, painted.segment_of, count)
+
+
+def draw_plan(surface: LabelledSurface, plan: Plan, marked: tuple[int, ...] = ()) -> Picture3D:
     """The segments of another planner's plan, or the vertices that make it invalid.
+
+    Args:
+        marked: vertices to be pointed at; the borders of their segments are marked as well.
 
     Raises:
         InputError: the plan has another number of vertices.
@@ -156,34 +168,41 @@ def draw_plan(surface: LabelledSurface, plan: Plan) -> Picture3D:
         message = f"has {given} entries for {count(wanted, 'vertex', 'vertices')}"
         raise InputError(None, "vertex_colors", message)
     report = check_plan(surface, plan)
-    cracks = surface.crack_colors
     if report.segments is None:
+        faults = list(dict.fromkeys(fault.vertex for fault in report.violations))
         labels = np.zeros(len(surface.vertices), dtype=np.int64)
-        labels[[fault.vertex for fault in report.violations]] = 1
-        wrong = count(len(report.violations), "vertex", "vertices")
+        labels[faults] = 1
         classes = [
-            VertexClass("nothing wrong", AREAS[0]),
+            VertexClass("nothing wrong", OTHERS),
             VertexClass("wrong color, or none", WARNING),
         ]
-        title = f"{surface.name}: no valid plan, {wrong} wrong"
-        return draw_surface(surface, SurfaceView(title, labels, classes, cracks=cracks))
-    segments, own = report.segments, np.array(report.segment_of, dtype=np.int64)
-    labels = np.where(own >= 0, own, bare_labels(surface, segments))
-    share = shares(surface, labels, segments + 2)
-    color_of = dict(zip(report.segment_of, plan.vertex_colors, strict=True))
-    classes = segment_classes(
-        [surface.colors[color_of[number] or 0] for number in range(segments)],
-        share[:segments],
-        assign(neighboring(surface, labels, segments)),
-    )
-    classes += bare_classes(*share[segments:])
-    notes = ["A plan: one color per vertex. Shares of the surface."]
-    if segments > len(AREAS):
-        notes.append("Fills repeat: the numbers identify the segments.")
-    title = f"{surface.name}: plan with {segments_and_lift_offs(segments)}"
+        view = SurfaceView(
+            f"{surface.name}: no valid plan, {count(len(faults), 'vertex', 'vertices')} wrong",
+            labels,
+            classes,
+            cracks=surface.crack_colors,
+            marked=faults[:_MOST_MARKED],
+        )
+        return draw_surface(surface, view)
+    own = np.array(report.segment_of, dtype=np.int64)
+    view = _of_plan(surface, plan, own, report.segments)
+    notes = ["A plan: one color per vertex. Shares of the surface.", *surface_notes(surface)]
     return draw_surface(
-        surface, SurfaceView(title, labels, classes, cracks=cracks, notes=tuple(notes))
+        surface,
+        replace(
+            view,
+            cracks=surface.crack_colors,
+            notes=tuple(notes),
+            marked=marked,
+        ),
     )
+
+
+def _of_plan(surface: LabelledSurface, plan: Plan, segment_of: Index, segments: int) -> SurfaceView:
+    color_of = dict(zip(segment_of.tolist(), plan.vertex_colors, strict=True))
+    classes = segment_classes(surface, [color_of.get(number) for number in range(segments)])
+    title = f"{surface.name}: plan with {segments_and_lift_offs(segments)}"
+    return with_shares(surface, title, segment_of, classes)
 
 
 def draw_reasons(
@@ -220,7 +239,7 @@ def by_reason(
     fills = [REASONS[(code - 1) % len(REASONS)] for code in range(given_up + 1)]
     fills[VALID] = FAINT
     classes = [
-        VertexClass(f"{names[code]}  {share[code]}, {counts[code]} vertices", fills[code])
+        VertexClass(f"{names[code]}, {share[code]}, {counts[code]} vertices", fills[code])
         for code in range(given_up + 1)
     ]
     who = "any branch" if branch is None else reasons_of.branches[branch]
@@ -230,17 +249,47 @@ def by_reason(
     return SurfaceView(f"{surface.name}: reach of {who}", labels, classes, notes=tuple(notes))
 
 
-def segment_classes(
-    colors: Sequence[str], share: Sequence[str], fills: Sequence[str], between: str = "  "
-) -> list[VertexClass]:
-    """Segments 0, 1, … by their colors, their shares as text and their fills."""
+def with_shares(
+    surface: LabelledSurface, title: str, labels: Index, classes: Sequence[VertexClass]
+) -> SurfaceView:
+    """A view of classes and of what has no color, each with its share of the surface.
+
+    Args:
+        labels: (n,) the class of each vertex, -1 where it has no color.
+    """
+    labels = np.where(labels < 0, bare_labels(surface, len(classes)), labels)
+    share = shares(surface, labels, len(classes) + 2)
+    named = [
+        replace(one, name=f"{one.name}, {own}") for one, own in zip(classes, share, strict=False)
+    ]
+    return SurfaceView(title, labels, named + bare_classes(*share[len(classes) :]))
+
+
+def segment_classes(surface: LabelledSurface, colors: Sequence[int | None]) -> list[VertexClass]:
+    """Segments 0, 1, … by their colors, None where one has no vertex."""
     return [
-        VertexClass(f"segment {number}: {color}{between}{own}", fill, str(number))
-        for number, (color, own, fill) in enumerate(zip(colors, share, fills, strict=True))
+        VertexClass(
+            f"segment {number}: {'empty' if color is None else surface.colors[color]}",
+            fill_of(surface, () if color is None else [color]),
+            str(number),
+        )
+        for number, color in enumerate(colors)
     ]
 
 
-def bare_labels(surface: LabelledSurface, first: int) -> Labels:
+def fill_of(surface: LabelledSurface, colors: Collection[int]) -> str:
+    """What is painted where each of these colors is available, or the only one chosen."""
+    paints = paints_of(surface.colors)
+    return mixed(paints[surface.colors[color]] for color in colors)
+
+
+def surface_notes(surface: LabelledSurface) -> tuple[str, ...]:
+    """What has to be said where colors share paints."""
+    repeated = len(surface.colors) > len(PAINTS)
+    return ("Paints repeat: the numbers and names tell areas apart.",) * repeated
+
+
+def bare_labels(surface: LabelledSurface, first: int) -> Index:
     """For every vertex (n,) the class that it has if it has no color: see :func:`bare_classes`.
 
     Args:
@@ -254,24 +303,14 @@ def bare_labels(surface: LabelledSurface, first: int) -> Labels:
 def bare_classes(unreachable: str, given_up: str) -> list[VertexClass]:
     """The two classes of vertices without color, with their shares as text."""
     return [
-        VertexClass(f"{UNREACHABLE}  {unreachable}", FAINT),
-        VertexClass(f"{GIVEN_UP}  {given_up}", GREY),
+        VertexClass(f"{UNREACHABLE}, {unreachable}", FAINT),
+        VertexClass(f"{GIVEN_UP}, {given_up}", GREY),
     ]
 
 
-def shares(surface: LabelledSurface, labels: Labels, count: int) -> list[str]:
+def shares(surface: LabelledSurface, labels: Index, count: int) -> list[str]:
     """Each class's share of the surface, as text."""
     owned = surface.vertex_areas
     sums = np.bincount(labels, owned, minlength=count)
     whole = float(owned.sum()) or 1.0
     return [percent(value / whole, value / whole) for value in sums]
-
-
-def neighboring(surface: LabelledSurface, labels: Labels, count: int) -> dict[int, set[int]]:
-    """For each class 0 … count - 1 those of them that are next to it across a mesh edge."""
-    found: dict[int, set[int]] = {label: set() for label in range(count)}
-    ends = labels[surface.mesh.edges]
-    for a, b in sorted(set(map(tuple, np.concatenate([ends, ends[:, ::-1]]).tolist()))):
-        if a != b and a in found and b in found:
-            found[a].add(b)
-    return found

@@ -14,10 +14,8 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell
 from cellcolor.data.instance import Instance
-from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
-from cellcolor.decomposition import Decomposition
-from cellcolor.pictures.palette import INK, LINES
+from cellcolor.pictures.palette import INK, PAINTS
 from cellcolor.pictures.picture import Outline, Picture2D, PlaneLine
 
 _DEAD = "dead edge"
@@ -28,17 +26,10 @@ _Text = tuple[str, Array, float]
 """A text, its place (2,), and its size in points."""
 
 
-def draw_graph(
-    graph: Instance,
-    surface: LabelledSurface | None = None,
-    decomposition: Decomposition | None = None,
-) -> Picture2D:
-    """The graph, its nodes about where their cells are if there is a surface."""
-    places = None
-    if surface is not None and decomposition is not None:
-        places = _places_on(surface, decomposition)
+def draw_graph(graph: Instance) -> Picture2D:
+    """The graph; where its nodes are means nothing."""
     radii = np.array([0.8 + 0.08 * sum(map(len, cell.loops)) for cell in graph.cells])
-    centers = _layout(graph, places, radii)
+    centers = _layout(graph, radii)
     low, high = (centers - radii[:, None], centers + radii[:, None]) if len(radii) else ([], [])
     extent = float((np.max(high, axis=0) - np.min(low, axis=0)).max()) if len(radii) else 1.0
     unit = extent / _POINTS_WIDE  # one point of the printed picture
@@ -66,8 +57,8 @@ def draw_graph(
         for place, color in enumerate(colors):
             shifted = _beside(path, (place - (len(colors) - 1) / 2) * 2.2 * unit)
             name = f"{color}: {graph.colors[color]}"
-            lines.append(PlaneLine(name, LINES[color % len(LINES)], shifted, 2.0))
-        if len(graph.colors) > len(LINES) and colors:
+            lines.append(PlaneLine(name, PAINTS[color % len(PAINTS)], shifted, 2.0))
+        if len(graph.colors) > len(PAINTS) and colors:
             texts.append((",".join(map(str, colors)), path[len(path) // 2], 6.0))
 
     outlines: list[Outline] = []
@@ -84,7 +75,7 @@ def draw_graph(
         "as seen from outside; black bars separate the loops of a cell with holes.",
         "Edge: one line for each joinable color. Positions mean nothing.",
     ]
-    if len(graph.colors) > len(LINES):
+    if len(graph.colors) > len(PAINTS):
         notes.append("Line colors repeat: the numbers on the edges identify the colors.")
     cells, edges = count(len(graph.cells), "cell"), count(len(graph.edges), "edge")
     title = f"{graph.name}: {cells}, {edges}"
@@ -106,7 +97,7 @@ def _node(
     bounds = np.linspace(0, 2 * np.pi, len(cell.colors) + 1) + np.pi / 2
     for color, start, end in zip(cell.colors, bounds[:-1], bounds[1:], strict=True):
         wedge = _arc(center, radius, start, end, hub=len(cell.colors) > 1)
-        shapes.append(Outline(LINES[color % len(LINES)], wedge))
+        shapes.append(Outline(PAINTS[color % len(PAINTS)], wedge))
     shapes.append(Outline("#FFFFFF", _arc(center, 0.86 * radius, 0.0, 2 * np.pi, hub=False)))
     if len(cell.loops) > 1:
         shapes += [
@@ -123,33 +114,16 @@ def _node(
     return shapes, texts
 
 
-def _places_on(surface: LabelledSurface, decomposition: Decomposition) -> Array:
-    """The middles (cells, 2) of the cells, as seen from before the surface.
-
-    Args:
-        decomposition: its topological graph; each cell has a vertex.
-    """
-    cells = np.array(decomposition.vertex_cell, dtype=np.int64)
-    count = len(decomposition.instance.cells)
-    inside = cells != OUTSIDE
-    sums = np.zeros((count, 3))
-    np.add.at(sums, cells[inside], surface.vertices[inside])
-    middles = sums / np.bincount(cells[inside], minlength=count)[:, None]
-    front = surface.vertex_normals.mean(axis=0)
-    if np.linalg.norm(front) < 0.2:  # closed: no side is the front
-        front = np.array([0.0, 0.0, 1.0])
-    front = front / np.linalg.norm(front)
-    right = np.cross([0.0, 1.0, 0.0] if abs(front[2]) > 0.5 else [0.0, 0.0, 1.0], front)
-    right /= np.linalg.norm(right)
-    return np.asarray(middles @ np.column_stack([right, np.cross(front, right)]))
-
-
-def _layout(instance: Instance, places: Array | None, radii: Array) -> Array:
+def _layout(instance: Instance, radii: Array) -> Array:
     """Centers of the nodes, apart from each other by more than their radii."""
     if not len(radii):
         return np.zeros((0, 2))
-    if places is None:
-        places = _planar(instance)
+    graph = nx.Graph([(edge.left, edge.right) for edge in instance.edges if edge.right != OUTSIDE])
+    graph.remove_nodes_from([OUTSIDE])
+    graph.add_nodes_from(range(len(radii)))
+    start = nx.planar_layout(graph) if nx.is_planar(graph) else None
+    found = nx.kamada_kawai_layout(graph, pos=start)
+    places = np.array([found[cell] for cell in range(len(radii))])
     size = float(np.ptp(places, axis=0).max()) or 1.0
     centers = (places - places.mean(axis=0)) / size * 2.2 * float(radii.sum()) ** 0.5
     # Equal places are moved apart in directions of their own.
@@ -165,35 +139,6 @@ def _layout(instance: Instance, places: Array | None, radii: Array) -> Array:
         push = (overlap / distances)[:, :, None] * offsets
         centers = centers + 0.25 * push.sum(axis=1)
     return np.asarray(centers)
-
-
-def _planar(instance: Instance) -> Array:
-    """Places that keep to the cyclic orders as far as the surface lets itself be laid flat."""
-    embedding: nx.PlanarEmbedding[tuple[str, int]] = nx.PlanarEmbedding()
-    graph: nx.Graph[tuple[str, int]] = nx.Graph()
-    for cell in instance.cells:
-        embedding.add_node(("cell", cell.id))
-        before = None
-        for dart in (dart for loop in cell.loops for dart in loop):
-            embedding.add_half_edge(("cell", cell.id), ("dart", dart), cw=before)
-            before = ("dart", dart)
-            embedding.add_half_edge(before, ("cell", cell.id))
-    for edge in instance.edges:
-        if OUTSIDE not in (edge.left, edge.right):
-            for dart in (edge.id, -edge.id):
-                own = edge.left if dart > 0 else edge.right
-                embedding.add_half_edge(("dart", dart), ("dart", -dart), cw=("cell", own))
-    graph.add_nodes_from(embedding)
-    graph.add_edges_from(embedding.edges)
-    try:
-        embedding.check_structure()
-        laid = nx.combinatorial_embedding_to_pos(embedding)
-        size = max(max(place) for place in laid.values()) or 1
-        start = {node: (x / size, y / size) for node, (x, y) in laid.items()}
-    except nx.NetworkXException:  # a handle, or parts that lie inside one another
-        start = None
-    found = nx.spring_layout(graph, pos=start, seed=0, iterations=100)
-    return np.array([found["cell", cell.id] for cell in instance.cells])
 
 
 def _ring(instance: Instance, cell: int, centers: Array) -> dict[int, float]:

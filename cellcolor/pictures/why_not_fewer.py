@@ -7,11 +7,11 @@ cross each other.
 from __future__ import annotations
 
 from collections import deque
-from itertools import combinations, cycle
+from itertools import combinations
 
 import numpy as np
 
-from cellcolor.arrays import Mask
+from cellcolor.arrays import Index, Mask
 from cellcolor.checker.certificates import BoundVerdict
 from cellcolor.data.bound_kinds import certificate_of
 from cellcolor.data.bounds import Shown
@@ -21,13 +21,10 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.decomposition import Decomposition
 from cellcolor.errors import InputError
-from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, draw_surface
-from cellcolor.pictures.palette import AREAS, FAINT, LINES, WARNING
-from cellcolor.pictures.picture import Picture3D
-
-_REST = "#F2F2F2"
-"""What says nothing here but can be covered."""
-_WAYS = (LINES[0], LINES[5])
+from cellcolor.pictures.mesh_picture import SurfaceView, draw_surface
+from cellcolor.pictures.palette import FAINT, WARNING
+from cellcolor.pictures.picture import Picture3D, VertexClass
+from cellcolor.pictures.surface_pictures import OTHERS, fill_of
 
 
 def draw_why(
@@ -50,17 +47,17 @@ def draw_why(
         raise InputError(None, "bounds", message)
     title = f"{surface.name}: why {count(bound.value, 'segment')} at least"
     shown = certificate.shown(bound.value, decomposition.instance)
-    return draw_surface(surface, _view(surface, decomposition, title, shown))
+    return draw_surface(surface, view_of(surface, decomposition, title, shown))
 
 
-def _view(
+def view_of(
     surface: LabelledSurface, decomposition: Decomposition, title: str, shown: Shown
 ) -> SurfaceView:
     """The marked cells, the connections, and where these cross each other."""
     cells = np.array(decomposition.vertex_cell, dtype=np.int64)
     marks, ways = shown.marks, shown.connections
     rest = len(marks) + len(ways) + (1 if ways else 0)
-    labels: Labels = np.where(cells == OUTSIDE, rest + 1, rest)
+    labels: Index = np.where(cells == OUTSIDE, rest + 1, rest)
     for number, mark in enumerate(marks):
         labels[np.isin(cells, list(mark.cells))] = number
     drawn = [
@@ -72,11 +69,11 @@ def _view(
         labels[[vertex for vertex in path if not marked[vertex]]] = len(marks) + number
     for one, other in combinations(drawn, 2):
         labels[list(one & other)] = rest - 1
-    classes = [VertexClass(mark.text, AREAS[mark.group % len(AREAS)], mark.label) for mark in marks]
-    classes += [VertexClass(way.text, rgb) for way, rgb in zip(ways, cycle(_WAYS))]
+    classes = [VertexClass(m.text, fill_of(surface, m.colors), m.label) for m in marks]
+    classes += [VertexClass(way.text, fill_of(surface, [way.color])) for way in ways]
     if ways:
         classes.append(VertexClass("where they cross", WARNING))
-    classes += [VertexClass("other cells", _REST), VertexClass("not covered", FAINT)]
+    classes += [VertexClass("other cells", OTHERS), VertexClass("not covered", FAINT)]
     return SurfaceView(title, labels, classes, cracks=surface.crack_colors, notes=shown.notes)
 
 

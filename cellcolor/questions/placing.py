@@ -20,6 +20,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import labelled
+from cellcolor.frontend.contact.engine import meet
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 from cellcolor.frontend.parts.remeshing import length_for, remeshed
 from cellcolor.frontend.parts.unfolding import fold_angle, folds
@@ -213,7 +214,7 @@ def stands_in(prepared: PreparedScene) -> str | None:
     if place.ground is not None and (place.ground.along(vertices) < place.ground.offset_m).any():
         return "the ground"
     for number, solid in enumerate(place.obstacles, 1):
-        if solid.meets(place.target) or (solid.at_least(vertices) <= 0).any():
+        if meet(solid, place.target):
             return f"obstacle {number}"
     return None
 

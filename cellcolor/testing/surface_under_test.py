@@ -152,14 +152,14 @@ class SurfaceUnderTest:
             return ["no picture: a solution was judged"]
         folder = self._folder / "pictures"
         folder.mkdir(exist_ok=True)
-        file = folder / f"{re.sub('[^A-Za-z0-9]+', '-', test).strip('-')[-120:]}.png"
+        file = folder / f"{re.sub('[^A-Za-z0-9]+', '-', test).strip('-')[-120:]}.html"
         try:
             verdict.plot(file)
             if verdict.improvement is None:
                 return [f"picture: {file}"]
-            better = file.with_name(f"{file.stem}-better.png")
-            painted = verdict.improvement.better.painted
-            show(painted.surface, better, plan=painted.plan)
+            better = file.with_name(f"{file.stem}-better.html")
+            painted, places = verdict.improvement.better.painted, verdict.improvement.places
+            show(painted.surface, better, plan=painted.plan, marked=places)
         except CellcolorError as error:
             return [f"no picture: {error}"]
         return [f"picture: {file}", f"better: {better}"]

@@ -124,7 +124,7 @@ def at_vertices(
         tilt = angles(axes, -surface.normals[vertex])
     compared = _compared(robot)
     branch, apart = np.zeros(len(joints), dtype=np.int64), np.full(len(joints), np.inf)
-    for rows in chunks(len(joints), 64 * robot.joints * len(built.branches)):
+    for rows in chunks(len(joints)):
         deadline.check()
         known = built.configurations[vertex[rows]][:, :, compared]
         asked = joints[rows, None][..., compared]

@@ -113,7 +113,7 @@ def branches_of(
     """
     found, compared = np.full(len(rows), -1), prepared.robot.task.joints
     several: dict[int, set[int]] = {}  # of rows with more than one branch
-    for part in chunks(len(rows), 64 * compared * prepared.arm.slots):
+    for part in chunks(len(rows)):
         own = rows[part]
         solutions, before = _solutions(
             prepared, dense.tips[own], dense.axes[own], across[part], deadline

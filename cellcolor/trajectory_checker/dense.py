@@ -14,7 +14,7 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import TooLarge
-from cellcolor.frontend.arm.kinematics import angle_about, bytes_of_poses, forward, tool_across
+from cellcolor.frontend.arm.kinematics import angle_about, forward, tool_across
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.turned import turn_at
 from cellcolor.frontend.setup import Turn
@@ -82,7 +82,7 @@ def strokes_of(contact: Mask) -> Index:
 def poses_of(robot: Robot, joints: Array, deadline: Deadline) -> tuple[Array, Array]:
     """Tips and tool axes (k, 3) of configurations (k, joints)."""
     tips, axes = np.empty((len(joints), 3)), np.empty((len(joints), 3))
-    for rows in chunks(len(joints), bytes_of_poses(robot.joints)):
+    for rows in chunks(len(joints)):
         deadline.check()
         poses = forward(robot, joints[rows])
         tips[rows], axes[rows] = poses.tip, poses.tool_axis
@@ -92,7 +92,7 @@ def poses_of(robot: Robot, joints: Array, deadline: Deadline) -> tuple[Array, Ar
 def across_of(robot: Robot, joints: Array, deadline: Deadline = NEVER) -> Array:
     """The tool's x axis (k, 3) in the world, in configurations (k, joints)."""
     across = np.empty((len(joints), 3))
-    for rows in chunks(len(joints), bytes_of_poses(robot.joints)):
+    for rows in chunks(len(joints)):
         deadline.check()
         across[rows] = tool_across(robot, forward(robot, joints[rows]))
     return across

@@ -22,7 +22,6 @@ from cellcolor.memory import chunks
 
 _MOST = 2_000_000  # small triangles; some hundred bytes each
 _NEIGHBORS = 8  # how many small triangles are compared at first to find the nearest to a point
-_PAIR = 1_024  # bytes that a point and a small triangle take
 _UNIT = 1e-6  # m; sides much shorter than one unit are nothing to trimesh
 _NEAR = 0.02  # m; for points farther off, a triangle that is nearly the nearest will do
 
@@ -140,7 +139,7 @@ class FineMesh:
         rows, asked = np.arange(len(points)), min(_NEIGHBORS, len(self.triangles))
         while len(rows):
             unsure = []
-            for some in chunks(len(rows), asked * _PAIR):
+            for some in chunks(len(rows), asked // 4):
                 deadline.check()
                 part = rows[some]
                 apart, farthest, triangle[part], at[part] = self._nearest_of(

@@ -15,7 +15,6 @@ from cellcolor.memory import batches, check_memory
 from cellcolor.trajectory_checker.contact import Contact
 from cellcolor.trajectory_checker.fine_mesh import FineMesh
 
-_PAIR = 192  # bytes that two places take where they are found
 _TOGETHER = 20_000  # places that have at most
 _MOST = 50_000_000  # pairs; more take too long
 _KEPT = 80  # and until all are counted
@@ -162,7 +161,7 @@ def _near(tree: cKDTree, points: Array, within: float) -> Iterator[tuple[Index, 
     pairs = int(counts.sum())
     what = f"the trajectory passes the same place too often: {pairs:,} pairs of places"
     check_memory(pairs * _KEPT, what)
-    for part in batches(counts, _PAIR):
+    for part in batches(np.maximum(counts // 32, 1)):
         near = tree.query_ball_point(points[part], within, return_sorted=False)
         lists = [np.zeros(0, dtype=np.int64), *(np.asarray(own, dtype=np.int64) for own in near)]
         yield np.concatenate(lists), np.repeat(np.arange(part.start, part.stop), counts[part])

@@ -11,10 +11,12 @@ from cellcolor.arrays import Array, Index
 from cellcolor.data.candidate_table import VALID
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.deadline import Deadline
-from cellcolor.frontend.arm.body import Body
+from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.validity import Judge
+from cellcolor.frontend.reach.validity_tests import Workplace
 from cellcolor.memory import chunks
+from cellcolor.trajectory_checker.contacts import Pair, pairs_of, touching
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import OFF_SURFACE
@@ -42,39 +44,56 @@ def judge_validity(
         faults.add("unplanned", text, sample, place=at_samples[sample])
     contact = np.flatnonzero(dense.contact)
     names = prepared.judge.reason_names
-    _note(dense, contact, _reasons(prepared.judge, dense.joints[contact], deadline), names, faults)
+    reasons = _reasons(prepared, prepared.judge, dense.joints[contact], deadline)
+    _note(dense, contact, reasons, names, faults)
     # What lies between two samples with no planned move is known to be nothing.
     on_the_way = np.flatnonzero(~dense.contact & ~(unplanned[dense.sample] & (dense.way > 0)))
     setup = prepared.setup.varied(constraints={"force": False, "conditioning": False})
     judge = Judge(replace(prepared.workplace, arm=replace(prepared.arm, setup=setup)))
-    reasons = _reasons(judge, dense.joints[on_the_way], deadline)
-    if setup.constraints.collision:
-        through = np.flatnonzero(reasons == VALID)
-        rows = on_the_way[through]
-        hit = _through_object(prepared, dense.tips[rows], dense.axes[rows])
-        reasons[through[hit]] = judge.reason_names.index("object collision")
+    joints = dense.joints[on_the_way]
+    reasons = _reasons(prepared, judge, joints, deadline, on_the_way=True)
     _note(dense, on_the_way, reasons, judge.reason_names, faults)
 
 
-def _reasons(judge: Judge, joints: Array, deadline: Deadline) -> NDArray[np.uint8]:
-    """The code (k,) of the first test that each configuration fails."""
+def _reasons(
+    prepared: PreparedScene,
+    judge: Judge,
+    joints: Array,
+    deadline: Deadline,
+    *,
+    on_the_way: bool = False,
+) -> NDArray[np.uint8]:
+    """The code (k,) of the first test that each configuration fails; contacts by an own engine."""
+    place, names = prepared.workplace, judge.reason_names
+    tests: dict[str, list[Pair]] = {}
+    if prepared.setup.constraints.collision:
+        tests = pairs_of(place)
+        if on_the_way:
+            tests["object collision"] += _through_object(place)
+    others = judge.only(frozenset(names) - tests.keys())
     reasons = np.zeros(len(joints), dtype=np.uint8)
-    for rows in chunks(len(joints), judge.bytes_kept(joints.shape[1])):
-        reasons[rows] = judge(joints[rows], deadline).reasons
+    for rows in chunks(len(joints)):
+        found = others(joints[rows], deadline).reasons
+        poses = forward(prepared.robot, joints[rows])
+        for name in sorted(tests, key=names.index):
+            deadline.check()
+            code = names.index(name)
+            asked = np.flatnonzero((found == VALID) | (found > code))
+            found[asked[touching(tests[name], poses.take(asked))]] = code
+        reasons[rows] = found
     return reasons
 
 
-def _through_object(prepared: PreparedScene, tips: Array, axes: Array) -> NDArray[np.bool_]:
-    """Whether the tool's axis meets the object between the tip and the tool's body, (k,).
+def _through_object(place: Workplace) -> list[Pair]:
+    """The tool's axis between the tip and the tool's body, which must not meet the object.
 
     The first millimeter from the tip is left out: the tip may lie on the object.
     """
-    length = prepared.workplace.tip.body.length
-    if length <= OFF_SURFACE:
-        return np.zeros(len(tips), dtype=bool)
-    body = Body("tool tip", 0, np.zeros(3), np.array([0, 0, length - OFF_SURFACE]), _THIN, False)
-    ends = np.stack([tips - OFF_SURFACE * axes, tips - length * axes])
-    return prepared.workplace.target.touched_by(body, ends)
+    tip = place.tip.body
+    if tip.length <= OFF_SURFACE:
+        return []
+    start = tip.start + OFF_SURFACE / tip.length * (tip.end - tip.start)
+    return [(replace(tip, start=start, radius=_THIN), place.target, 0.0)]
 
 
 def _note(

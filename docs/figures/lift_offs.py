@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 import cellcolor
 from cellcolor.arrays import Array, Index
 from cellcolor.frontend import build_surface
-from cellcolor.pictures.palette import AREAS, FAINT, INK, LINES, WARNING
+from cellcolor.pictures.palette import FAINT, INK, LINES, PAINTS, WARNING
 
 TOP = Path(__file__).resolve().parents[2]
 sys.path.append(str(TOP / "benchmarks"))
@@ -56,7 +56,7 @@ def _areas(axes: Axes, vertices: Array, faces: Index, owner: Index) -> None:
         here, after, before = (corners[:, (k + turn) % 3] for turn in (0, 1, 2))
         kites = np.stack([here, (here + after) / 2, middle, (here + before) / 2], axis=1)
         numbers = owner[faces[:, k]].tolist()
-        fills = [FAINT if number < 0 else AREAS[number % len(AREAS)] for number in numbers]
+        fills = [FAINT if number < 0 else PAINTS[number % len(PAINTS)] for number in numbers]
         axes.add_collection(PolyCollection(kites, facecolors=fills, edgecolors=fills))
     axes.autoscale_view()
 

@@ -27,7 +27,8 @@ def main(page_file: Path | None) -> None:
             page_file = Path(folder) / "report.html"
             page_file.write_bytes(cellcolor.plan("wok").page())
         browser = playwright.chromium.launch(
-            executable_path=shutil.which("chromium"), args=["--no-sandbox"]
+            executable_path=shutil.which("chromium"),
+            args=["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
         )
         page = browser.new_page(viewport={"width": 1400, "height": 900})
         page.goto(page_file.resolve().as_uri())

@@ -43,7 +43,7 @@ def show(target: Path, *what: Path | str, width: int = WIDTH) -> None:
         large = Image.open(Path(work) / "large.png").convert("RGB")
     size = (width, round(width * large.height / large.width))
     small = large.resize(size, Image.Resampling.LANCZOS)
-    small.quantize(256, dither=Image.Dither.NONE).save(target, optimize=True)
+    small.quantize(256, kmeans=2, dither=Image.Dither.NONE).save(target, optimize=True)
 
 
 def run(*arguments: Path | str) -> None:

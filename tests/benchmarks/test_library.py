@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import csv
 import hashlib
 import json
 import runpy
 import shutil
+import subprocess
 import sys
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -27,6 +30,7 @@ from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import STRANDS, Options
 
 sys.path.append(str(INSTANCES.parent / "benchmarks"))
+import library_archive
 from library_entries import INDEX, SOLUTIONS, Origin, entry_of, graph_of, problems
 
 LIBRARY = LibraryIndex.read(INSTANCES / INDEX)
@@ -366,3 +370,25 @@ class TestReading:
         with pytest.raises(InputError) as caught:
             LibraryIndex.from_document(document)
         assert text in str(caught.value)
+
+
+@pytest.mark.second
+def test_the_archive_is_checked_with_python_alone(tmp_path: Path) -> None:
+    """Unpacked in an empty folder: its solutions of its graphs, judged without the package."""
+    archive = tmp_path / "library.zip"
+    table = library_archive.as_csv(library_archive.measured(None))
+    library_archive.pack(archive, table)
+    with zipfile.ZipFile(archive) as packed:
+        packed.extractall(tmp_path)
+    (top,) = tmp_path.glob("cellcolor-library-*")
+    for name in ("annulus", "hub_60", "wok"):
+        files = (f"graphs/{name}.json", f"solutions/{name}.solution.json")
+        command = [sys.executable, "-I", "-S", "check_solution.py", *files]
+        done = subprocess.run(command, cwd=top, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+    rows = {row["name"]: row for row in csv.DictReader((top / "features.csv").open())}
+    assert {entry.name for entry in LIBRARY.entries if entry.file} == set(rows)
+    # A hub with its leaf cells is a star, and all of a hub's darts are on one loop.
+    assert rows["hub_60"]["treewidth_at_most"] == "1"
+    assert (rows["hub_60"]["cells"], rows["hub_60"]["most_darts"]) == ("61", "60")
+    assert rows["annulus"]["most_loops"] == "2"

@@ -139,24 +139,21 @@ def test_usage(arguments: list[object], capsys: Capture) -> None:
     refused(arguments, capsys, "cellcolor show: ")
 
 
-@pytest.mark.parametrize(("library", "kind"), [("matplotlib", "svg"), ("plotly", "html")])
+@pytest.mark.parametrize("options", [["x.svg"], ["x.html", "--graph"]], ids=str)
 def test_library_not_installed(
-    library: str,
-    kind: str,
-    tmp_path: Path,
-    capsys: Capture,
-    monkeypatch: pytest.MonkeyPatch,
+    options: list[str], tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """A page with a surface needs none."""
     path = saved(DRAWN, tmp_path)
-    for module in [name for name in sys.modules if name.partition(".")[0] == library]:
+    for module in [name for name in sys.modules if name.partition(".")[0] == "matplotlib"]:
         monkeypatch.setitem(sys.modules, module, None)
-    monkeypatch.setitem(sys.modules, library, None)
-    for module in ("static", "interactive"):
-        monkeypatch.delitem(sys.modules, f"cellcolor.pictures.{module}", raising=False)
-        monkeypatch.delattr(sys.modules["cellcolor.pictures"], module, raising=False)
-    arguments: list[object] = [path, "-o", tmp_path / f"x.{kind}"]
-    refused(arguments, capsys, library, "pip install 'fewest-lift-offs[viz]'")
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    monkeypatch.delitem(sys.modules, "cellcolor.pictures.static", raising=False)
+    monkeypatch.delattr(sys.modules["cellcolor.pictures"], "static", raising=False)
+    arguments: list[object] = [path, "-o", tmp_path / options[0], *options[1:]]
+    refused(arguments, capsys, "matplotlib", "pip install 'fewest-lift-offs[viz]'")
     assert list(tmp_path.iterdir()) == [path]
+    assert main(["show", str(path), "-o", str(tmp_path / "y.html")]) == 0
 
 
 def test_front_end_not_installed(

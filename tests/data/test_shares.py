@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
 from meshes import drawn, surfaces
-from pages import DRAWN, area_of, show, traces
+from pages import DRAWN, page_data, show, unpacked
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.shares import percent, shares_of
@@ -86,14 +86,21 @@ def test_table_json_and_picture_agree(name: str, tmp_path: Path, capsys: Capture
     rows = dict(re.findall(r"^ +(\d+) .*? ([\d.–]+) %\s*$", table, re.MULTILINE))
     uncovered = dict(re.findall(r"^ +(unreach\w+|given up) +([\d.]+) %", table, re.M))
     show(path, solved, "-o", page)
-    drawn_areas = [trace for trace in traces(page) if trace["type"] == "mesh3d"]
-    total = sum(map(area_of, drawn_areas))
+    data = page_data(page.read_text(encoding="utf-8"))
+    corners = unpacked(data["mesh"]["points"]).reshape(-1, 3)[unpacked(data["mesh"]["triangles"])]
+    a, b, c = corners.reshape(-1, 3, 3).transpose(1, 0, 2)
+    sizes = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    labels = unpacked(data["modes"][0]["labels"])[unpacked(data["mesh"]["triangles"])]
     seen = {}
-    for trace in drawn_areas:
-        words, _, share = trace["name"].rpartition("  ")
+    for number, own in enumerate(data["modes"][0]["classes"]):
+        # A third of each triangle for each of its corners.
+        area = (sizes * (labels.reshape(-1, 3) == number).mean(axis=1)).sum()
+        if not area:
+            continue
+        words, _, share = own["name"].rpartition(", ")
         seen[words.partition(":")[0].removeprefix("segment ")] = share.removesuffix(" %")
         low, *high = map(float, share.removesuffix(" %").split("–"))
-        painted = 100 * area_of(trace) / total
+        painted = 100 * area / sizes.sum()
         assert low - 0.051 <= painted <= (high[0] if high else low) + 0.051
     assert seen == rows | uncovered
     assert list(uncovered) == list(UNCOVERED)[: 2 if surface.given_up else 1]

@@ -20,7 +20,7 @@ from cellcolor.door.extras import DISTRIBUTIONS
 
 FUNCTIONS = ["build", "check", "plan", "read", "setups", "show", "solve", "tradeoff"]
 FRONTEND = {"pinocchio", "trimesh", "fcl", "coal", "igl", "scipy", "cellcolor.frontend"}
-PICTURES = {"plotly", "matplotlib", "cellcolor.pictures"}
+PICTURES = {"matplotlib", "cellcolor.pictures"}
 PACKAGE = Path(cellcolor.__file__).parent
 
 

@@ -176,8 +176,13 @@ def test_a_verdict_draws_itself(tmp_path: Path) -> None:
     assert (tmp_path / "plan.png").read_bytes().startswith(b"\x89PNG")
     drawing = oracle.judge(WORSE).plot()
     assert str(drawing).endswith("plan with 3 segments, 2 lift-offs")
-    names = [layer.name for layer in drawing.picture.layers]  # type: ignore[union-attr]
-    assert [name.partition(":")[0] for name in names] == ["segment 0", "segment 1", "segment 2"]
+    names = [name for name, _ in drawing.picture.legend]
+    assert [name.partition(":")[0] for name in names] == [
+        "segment 0",
+        "segment 1",
+        "segment 2",
+        "border of a marked segment",
+    ]
     with pytest.raises(InputError, match="is a solution"):
         oracle.judge(cellcolor.solve(ROW)).plot()
 
@@ -190,7 +195,7 @@ def test_what_is_wrong_has_a_place_and_is_drawn() -> None:
     assert tuple(map(str, verdict.violations)) == verdict.problems
     drawing = verdict.plot()
     assert str(drawing).endswith("no valid plan, 2 vertices wrong")
-    assert "wrong color, or none" in [layer.name for layer in drawing.picture.layers]  # type: ignore[union-attr]
+    assert "wrong color, or none" in dict(drawing.picture.legend)
 
 
 def test_a_plan_is_shown_from_a_shell(tmp_path: Path) -> None:

@@ -87,7 +87,7 @@ def test_a_notebook_shows_a_page_that_loads_nothing() -> None:
     page = drawing._repr_html_()
     assert page.startswith('<iframe srcdoc="') and page.endswith("</iframe>")
     inside = page.removeprefix('<iframe srcdoc="').partition('"')[0]
-    assert "&lt;script" in inside and "plotly" in inside
+    assert "&lt;script" in inside and "class View" in inside
     assert "src=&quot;http" not in inside
     assert len(repr(drawing)) < 200
 

@@ -162,13 +162,14 @@ def test_a_notebook_shows_a_table_and_a_picture() -> None:
 
 
 def test_a_notebook_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A drawing of the graph needs Matplotlib; what is turned with the mouse needs nothing."""
     import sys
 
-    monkeypatch.setitem(sys.modules, "plotly", None)
-    monkeypatch.setitem(sys.modules, "plotly.graph_objects", None)
-    monkeypatch.delitem(sys.modules, "cellcolor.pictures.interactive", raising=False)
-    page = cellcolor.solve(HALVES)._repr_html_()
-    assert "<td>" in page and "needs plotly: pip install" in page and "<iframe" not in page
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    monkeypatch.delitem(sys.modules, "cellcolor.pictures.static", raising=False)
+    page = cellcolor.solve(cellcolor.decompose(HALVES))._repr_html_()
+    assert "<td>" in page and "needs matplotlib: pip install" in page and "<iframe" not in page
+    assert "<iframe" in cellcolor.solve(HALVES)._repr_html_()
 
 
 @pytest.mark.parametrize(

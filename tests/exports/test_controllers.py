@@ -209,6 +209,14 @@ def test_the_force_pulls_against_the_surface_along_the_whole_stroke(name: str) -
     assert max(off) <= np.degrees(PRESSED) + 1
 
 
+def test_a_stretch_that_begins_in_contact_presses_from_there() -> None:
+    planned = driven("ur5", unplanned=(10,), force_n=9.0)
+    assert planned.trajectory.contact[10:12].all()
+    first, second = read("cellcolor.script", planned).stretches
+    assert first[-1].kind == "release"
+    assert second[0].kind == "press"
+
+
 @pytest.mark.parametrize("name", ["cellcolor.script", "cellcolor_linear.script"])
 def test_without_a_force_none_is_pressed(name: str) -> None:
     text = exported(on_the_wok(force_n=0.0))[name].decode()

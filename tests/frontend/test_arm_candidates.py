@@ -23,7 +23,6 @@ from cellcolor.frontend.arm.kinematics import (
     task_determinant,
     tip_jacobian,
 )
-from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 
@@ -101,11 +100,11 @@ def check(name: str, vertices: int, count: int) -> None:
     robot, ground = prepared.robot, scene.ground
     assert ground is not None
     exempt = scene.setup.robot.may_touch_ground
-    ends = body_ends(robot, forward(robot, joints))
+    place = prepared.workplace
     verdicts = {
-        "ground": hits_ground(robot, ends, ground.half_space, exempt),
-        "robot": hits_itself(robot, ends),
-        "object": prepared.workplace.target.hits(robot, ends),
+        "ground": place.with_ground(joints),
+        "robot": place.with_itself(joints),
+        "object": place.with_object(joints),
     }
     world = World(robot, prepared.surface.vertices, prepared.surface.faces)
     pairs, hits = not_neighbors(world), dict.fromkeys(verdicts, 0)

@@ -8,7 +8,6 @@ from functools import cache, partial
 
 import numpy as np
 import pytest
-import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
@@ -20,7 +19,6 @@ from cellcolor.errors import TooLarge
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.calibrated import missing
 from cellcolor.frontend.arm.newton import polished
-from cellcolor.frontend.arm.polyhedron import Polyhedron
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.between import remains_valid
 from cellcolor.frontend.reach.continuity import link
@@ -32,7 +30,7 @@ from cellcolor.trajectory_checker.repeated import _near
 
 pytestmark = pytest.mark.second
 
-SMALL = 4_000_000  # bytes, so that little work has many parts
+SMALL = 4_000_000  # bytes, for parts of 300 configurations, so that little work has many
 
 Step = Callable[[], object]
 
@@ -91,26 +89,12 @@ OF_ARM = ("inverse", "follow", "polished", "missing", "judge", "described", "pos
 def test_steps_with_configurations(arm: str, step: str, monkeypatch: pytest.MonkeyPatch) -> None:
     work = dict(of_arm(arm))[step]
     whole = work()
-    monkeypatch.setattr(memory, "MEMORY", SMALL)
+    monkeypatch.setattr(memory, "CHUNK", 300)
     # What solves a calibrated arm works in parts within the parts of who asks.
     deep = 2 if step in ("inverse", "follow") else 1
     assert temporary(work) <= deep * SMALL
     if isinstance(whole, np.ndarray):
         assert np.array_equal(np.asarray(work()), whole, equal_nan=True)
-
-
-def ball(level: int) -> trimesh.Trimesh:
-    return trimesh.creation.icosphere(level)
-
-
-def contains() -> object:
-    mesh = ball(4)
-    return Polyhedron(mesh.vertices, mesh.faces).contains(np.tile(0.9 * mesh.vertices[:50], (4, 1)))
-
-
-def one_point_and_many_faces() -> object:
-    mesh = ball(6)
-    return Polyhedron(mesh.vertices, mesh.faces).contains(np.zeros((1, 3)))
 
 
 def located() -> object:
@@ -127,10 +111,7 @@ def near() -> object:
 
 
 def test_steps_with_faces(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(memory, "MEMORY", SMALL)
-    corners = 8 * 9 * len(ball(6).faces)  # of all faces, which are gathered once
-    assert temporary(contains) <= SMALL + corners / 16
-    assert temporary(one_point_and_many_faces) <= SMALL + 3 * corners
+    monkeypatch.setattr(memory, "CHUNK", 300)
     locate = located()
     assert callable(locate)
     # Of all points together it keeps numbers of triangles, weights, places and normals.
@@ -141,7 +122,7 @@ def test_steps_with_faces(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_points_between_vertices(monkeypatch: pytest.MonkeyPatch) -> None:
     """Also where few edges are cut into many pieces, and where pieces are cut again."""
-    monkeypatch.setattr(memory, "MEMORY", SMALL)
+    monkeypatch.setattr(memory, "CHUNK", 300)
     surface = prepared("ur5e_wok").surface
     edges = surface.edges()[:50]
     ends = np.tile(1.5 * surface.vertices[:, None], (16, 1, 1, 1))
@@ -172,19 +153,19 @@ def test_links(monkeypatch: pytest.MonkeyPatch) -> None:
     edges = surface.edges()
     step = partial(link, surface, edges, candidates, scene.arm.measure, None, probe=scene.arm.probe)
     whole = step()
-    monkeypatch.setattr(memory, "MEMORY", SMALL)
+    monkeypatch.setattr(memory, "CHUNK", 300)
     # Who calls gives so many edges as fit; here are all, whose ends and motions stay beside.
     ends = 8 * len(edges) * 256 * 7
     assert temporary(step) <= ends + 3 * SMALL
     assert (step() == whole).all()
 
 
-@given(st.lists(st.integers(0, 50), max_size=60), st.integers(1, 40), st.integers(1, 90))
-def test_batches_are_whole_and_fit(sizes: list[int], each: int, most: int) -> None:
+@given(st.lists(st.integers(0, 50), max_size=60), st.integers(1, 90))
+def test_batches_are_whole_and_fit(sizes: list[int], most: int) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(memory, "MEMORY", most * each)
-        parts = list(memory.batches(np.array(sizes, dtype=np.int64), each))
-        rows = list(memory.chunks(len(sizes), each))
+        patch.setattr(memory, "CHUNK", most)
+        parts = list(memory.batches(np.array(sizes, dtype=np.int64)))
+        rows = list(memory.chunks(len(sizes)))
     for found in (parts, rows):
         assert [k for part in found for k in range(part.start, part.stop)] == list(
             range(len(sizes))
@@ -217,8 +198,7 @@ def test_more_than_the_machine_has_is_refused(monkeypatch: pytest.MonkeyPatch) -
 def test_a_whole_build(arm: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Beside what is kept for each vertex, no more than the steps that call each other may take."""
     scene = prepared(arm).scene.varied(object={"target_vertices": 1_000})
-    monkeypatch.setattr("cellcolor.frontend.forked._cores", lambda: 1)
-    monkeypatch.setattr(memory, "MEMORY", SMALL)
+    monkeypatch.setattr(memory, "CHUNK", 300)
     vertices = 1_000
     slots, joints, points = 8, 6, len(prepared(arm).judge.tracked_steps)
     # Of a solution: joints twice, determinant, reason, color, bodies; three edges a vertex, each

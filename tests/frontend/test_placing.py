@@ -13,6 +13,7 @@ from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
 from cellcolor.frontend import prepared as module
 from cellcolor.frontend.build import build_prepared
+from cellcolor.frontend.contact import engine
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach import prepared_arm
@@ -59,7 +60,7 @@ def test_nothing_is_read_or_built_again(
         raise AssertionError("read or built again")
 
     for where, name in (
-        (module, "mesh_solid"),
+        (engine, "_made"),
         (module, "prepare_arm"),
         (module, "Tip"),
         (prepared_arm, "load_robot"),

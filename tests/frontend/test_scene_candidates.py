@@ -33,9 +33,7 @@ from cellcolor.frontend.arm.kinematics import (
     task_determinant,
     tip_jacobian,
 )
-from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
 from cellcolor.frontend.contact.obstacle import CylinderObstacle
-from cellcolor.frontend.contact.solids import mesh_solid
 from cellcolor.frontend.prepared import PreparedScene, prepare
 
 pytestmark = pytest.mark.second
@@ -136,26 +134,22 @@ def check_candidates(name: str, vertices: int, count: int) -> None:
     print(f"\n{name}: {count} candidates; " + str({k: f"{v:.0e}" for k, v in worst.items()}))
     assert max(worst.values()) < 1e-9
 
-    obstacles, solids = [], []
+    obstacles = []
     for obstacle in prepared.scene.obstacle:
         assert isinstance(obstacle, CylinderObstacle) and obstacle.rpy_rad == (0.0, 0.0, 0.0)
         pose = coal.Transform3s(np.eye(3), np.array(obstacle.position_m))
         obstacles.append((coal.Cylinder(obstacle.radius_m, obstacle.height_m), pose))
-        solids.append(obstacle.solid())
     assert prepared.scene.ground is not None
-    ground, exempt = prepared.scene.ground.height_m, prepared.setup.robot.may_touch_ground
-    target = mesh_solid(prepared.surface.vertices, prepared.surface.faces)
-    ends = body_ends(prepared.robot, forward(prepared.robot, joints))
+    ground = prepared.scene.ground.height_m
+    place = prepared.workplace
     # Each test on every candidate, not only on what the ones before it have left.
     verdicts = {
-        Reason.GROUND: hits_ground(prepared.robot, ends, prepared.scene.ground.half_space, exempt),
-        Reason.SELF_COLLISION: hits_itself(prepared.robot, ends),
-        Reason.OBJECT_COLLISION: target.hits(prepared.robot, ends),
+        Reason.GROUND: place.with_ground(joints),
+        Reason.SELF_COLLISION: place.with_itself(joints),
+        Reason.OBJECT_COLLISION: place.with_object(joints),
     }
-    if solids:
-        verdicts[Reason.OBSTACLE_COLLISION] = np.any(
-            [solid.hits(prepared.robot, ends) for solid in solids], axis=0
-        )
+    if obstacles:
+        verdicts[Reason.OBSTACLE_COLLISION] = place.with_obstacles(joints)
     contacts = {reason: Contacts() for reason in verdicts}
     world = World(prepared.robot, prepared.surface.vertices, prepared.surface.faces)
     wrong = unclear = 0

@@ -4,20 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-import trimesh
 from meshed_arm import with_collision, write_package
 from shipped import ROBOTS
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.body import Shapes
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.build import BuildResult, build_surface
-from cellcolor.frontend.reach.always_touching import check_capsules
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Setup
@@ -108,69 +103,6 @@ def test_links_that_always_overlap_are_named_and_may_touch(scene: Varied) -> Non
     with pytest.raises(InputError, match="no link 'wrist_9_link'") as caught:
         build_surface(scene(setup={"may_touch": [("wrist_9_link", "wrist_1_link")]}))
     assert caught.value.field == "robot.may_touch[0]"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("radius", [0.1, 0.05])
-def test_capsules_that_leave_nothing_free_are_refused(
-    scene: Varied, tmp_path: Path, radius: float
-) -> None:
-    """Balls as meshes about the frames of wrists 1 and 3, whose distance no joint changes."""
-    apart = np.hypot(0.09465, 0.0823)  # wrist 1 to 2 and 2 to 3 are at right angles
-    ball = tmp_path / "ball.stl"
-    trimesh.creation.icosphere(subdivisions=3, radius=radius).export(ball)
-
-    def with_balls(text: str) -> str:
-        for link in ("wrist_1_link", "wrist_3_link"):
-            text = with_collision(text, link, f'<mesh filename="{ball}"/>')
-        return text
-
-    keys = {"arm": with_balls, "target_vertices": 100}
-    if 2 * radius < apart:
-        assert build_surface(scene(setup={"mesh_collision": "capsules"}, **keys)).report.candidates
-        return
-    with pytest.raises(
-        InputError, match=r"'wrist_1_link' and 'wrist_3_link'.* 0 are free.*exact"
-    ) as caught:
-        build_surface(scene(setup={"mesh_collision": "capsules"}, **keys))
-    assert caught.value.field == "robot.mesh_collision"
-    said = re.search(r"by ([0-9.]+) to ([0-9.]+) mm", caught.value.message)
-    assert said is not None
-    balls = 1e3 * (2 * radius - apart)
-    assert [float(each) for each in said.groups()] == pytest.approx([balls, balls], abs=1)
-    build_surface(scene(setup={"mesh_collision": "hull"}, **keys))
-
-
-@pytest.mark.slow
-def test_capsules_that_leave_hardly_anything_free_are_warned_of(tmp_path: Path) -> None:
-    """Balls about the base and wrist 1, which meet unless the arm is stretched upwards."""
-    text = (ROBOTS / "ur5.urdf").read_text()
-    for link, radius in (("base_link", 0.75), ("wrist_1_link", 0.13)):
-        ball = tmp_path / f"{link}.stl"
-        trimesh.creation.icosphere(subdivisions=3, radius=radius).export(ball)
-        text = with_collision(text, link, f'<mesh filename="{ball}"/>')
-    (tmp_path / "arm.urdf").write_text(text)
-    links = re.findall(r'<link name="(\w+)"', text + (ROBOTS / "polishing_tool.urdf").read_text())
-    plain = load_robot(tmp_path / "arm.urdf", "wrist_3_link", TOOL, "tool_tip")
-    shaped = {body.link for body in plain.bodies}
-    others = tuple(
-        (ball, link)
-        for ball in ("base_link", "wrist_1_link")
-        for link in links
-        if link in shaped and {ball, link} != {"base_link", "wrist_1_link"}
-    )
-    robot = load_robot(
-        tmp_path / "arm.urdf", "wrist_3_link", TOOL, "tool_tip",
-        shapes=Shapes("capsules"), may_touch=others,
-    )  # fmt: skip
-    upwards = (0.0, -np.pi / 2, 0.0, 0.0, 0.0, 0.0)  # 0.91 m apart
-    warning = check_capsules(robot, upwards)
-    assert warning is not None
-    assert "'base_link' and 'wrist_1_link' overlap in" in warning
-    free = re.search(r"and ([0-9]+) are free", warning)
-    assert free is not None
-    assert 1 <= int(free.group(1)) <= 10
-    assert check_capsules(replace(robot, stand_ins=())) is None
 
 
 def test_a_tool_that_reaches_its_tip_is_warned_of(scene: Varied) -> None:

@@ -137,6 +137,6 @@ def test_result_hangs_together() -> None:
 def test_meta_can_be_written() -> None:
     surface = build_surface(WOK).surface
     assert json.loads(json.dumps(surface.meta, allow_nan=False)) == surface.meta
-    assert set(surface.meta["versions"]) == {"cellcolor", "pin", "trimesh", "fcl", "numpy"}
+    assert set(surface.meta["versions"]) == {"cellcolor", "pin", "coal", "trimesh", "numpy"}
     read = LabelledSurface.from_document(json.loads(surface.to_json()))
     assert read.vertex_colors == surface.vertex_colors and read.cracks == surface.cracks

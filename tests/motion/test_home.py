@@ -12,7 +12,7 @@ from shipped import ROBOTS, shipped
 import cellcolor
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.robot import wider
+from cellcolor.frontend.contact.engine import pairs_of
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.always_touching import always_touching
 from cellcolor.frontend.scene import Scene
@@ -103,8 +103,7 @@ def test_links_that_are_never_apart_by_the_clearance_do_not_block_the_arm() -> N
     """An IRB 120 has its tool within a centimeter of the link behind the flange, however it is."""
     prepared = prepare(Scene.read(ROBOTS.parents[1] / "instances/arms/irb120_half_pipe.toml"))
     robot, clearance = prepared.robot, 0.01
-    near = wider(prepared.workplace.robot, clearance / 2)
-    assert always_touching(near) == (("link_5", "tool_body"),)
+    assert always_touching(robot, pairs_of(robot, clearance)) == (("link_5", "tool_body"),)
     drawn = np.random.default_rng(1).uniform(robot.lower, robot.upper, (200, robot.joints))
     clear = FreeSpace(prepared, clearance)(drawn)
     assert 50 < clear.sum() < 200

@@ -8,28 +8,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 from library import PAPER
-from meshes import finer, octahedron
+from meshes import drawn, finer, octahedron
 from meshes import surface as labelled
-from pages import (
-    DRAWN,
-    area_of,
-    meshes,
-    points,
-    saved,
-    show,
-    side_file,
-    small_wok,
-    traces,
-    vertices_in,
-)
+from pages import DRAWN, areas, page_data, saved, show, side_file, small_wok, unpacked
 
+import cellcolor
 from cellcolor.cli import main
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.decomposition import decompose
-from cellcolor.pictures.palette import AREAS, assign
+from cellcolor.decomposition import decompose, decomposition_of
+from cellcolor.errors import InputError
+from cellcolor.pictures.mesh_picture import mesh_picture_parts
+from cellcolor.pictures.palette import mixed, paints_of
+from cellcolor.pictures.picture import ClassedMesh, Line
+from cellcolor.pictures.surface_pictures import draw_cells, draw_color, draw_plan, draw_segments
+from cellcolor.pictures.topological_graph import draw_graph
 
 
 def holding(instance: Instance) -> dict[str, set[int]]:
@@ -42,61 +37,63 @@ def holding(instance: Instance) -> dict[str, set[int]]:
     return found
 
 
+def classed_mesh(surface: LabelledSurface) -> ClassedMesh:
+    mesh = draw_cells(surface, decomposition_of(surface)).mesh
+    assert mesh is not None
+    return mesh
+
+
+def areas_of(mesh: ClassedMesh) -> list[float]:
+    """The area of each class as it is cut for a picture."""
+    points, triangles, owner = mesh_picture_parts(mesh.points, mesh.faces, mesh.labels)
+    corners = points[triangles]
+    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sizes = np.linalg.norm(doubled, axis=1) / 2
+    return np.bincount(owner, sizes, minlength=len(mesh.classes)).tolist()
+
+
 class TestCells:
     def test_every_vertex_lies_in_the_area_of_its_cell(self, tmp_path: Path) -> None:
         show(saved(DRAWN, tmp_path), "-o", tmp_path / "x.html")
-        instance = decompose(DRAWN, "drawn.surface.json")
-        found = meshes(tmp_path / "x.html")
-        assert {name: vertices_in(t, DRAWN) for name, t in found.items()} == holding(instance)
+        assert areas(tmp_path / "x.html") == holding(decompose(DRAWN, "drawn.surface.json"))
 
-    def test_areas_are_those_of_the_cells(self, tmp_path: Path) -> None:
+    def test_areas_are_those_of_the_cells(self) -> None:
         """The decomposition sums the dual areas on its own."""
-        show(saved(DRAWN, tmp_path), "-o", tmp_path / "x.html")
-        found = meshes(tmp_path / "x.html")
+        mesh = classed_mesh(DRAWN)
+        found = areas_of(mesh)
+        names = [one.name for one in mesh.classes]
         for cell in decompose(DRAWN).cells:
-            trace = found[f"cell {cell.id}"]
-            assert area_of(trace) == pytest.approx(cell.area)
+            assert found[cell.id] == pytest.approx(cell.area)
             colors = "{" + ", ".join(map(str, cell.colors)) + "}"
-            assert trace["name"] == f"cell {cell.id} {colors}  {100 * area_of(trace) / 20:.1f} %"
-        assert sum(map(area_of, found.values())) == pytest.approx(20.0)
+            assert names[cell.id] == f"cell {cell.id} {colors}, {100 * found[cell.id] / 20:.1f} %"
+        assert sum(found) == pytest.approx(20.0)
 
-    def test_triangles_face_outward(self, tmp_path: Path) -> None:
+    def test_triangles_face_outward(self) -> None:
         sphere = finer(*finer(*octahedron()))
-        colors = [[int(z > 0.1)] for _, _, z in sphere[0].tolist()]
-        surface = labelled(*sphere, colors)
-        show(saved(surface, tmp_path), "-o", tmp_path / "x.html")
-        for trace in meshes(tmp_path / "x.html").values():
-            corners = points(trace)[np.stack([trace[corner] for corner in "ijk"], axis=1)]
-            normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-            assert (np.einsum("ij,ij->i", normals, corners.mean(axis=1)) > 0).all()
+        mesh = classed_mesh(labelled(*sphere, [[int(z > 0.1)] for _, _, z in sphere[0].tolist()]))
+        points, triangles, _ = mesh_picture_parts(mesh.points, mesh.faces, mesh.labels)
+        corners = points[triangles]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        assert (np.einsum("ij,ij->i", normals, corners.mean(axis=1)) > 0).all()
 
     def test_borders_and_cracks(self, tmp_path: Path) -> None:
-        """Each mesh edge that is crossed has half of a piece of line in each of its triangles."""
+        """Each mesh edge that is crossed is marked on each of its triangles."""
         show(saved(DRAWN, tmp_path), "-o", tmp_path / "x.html")
-        lines = {t["name"]: t for t in traces(tmp_path / "x.html") if t.get("mode") == "lines"}
-        instance = decompose(DRAWN, "x")
-        assert instance.surface is not None
-        cell = instance.surface.vertex_cell
+        (mode,) = page_data((tmp_path / "x.html").read_text())["modes"]
+        lines = unpacked(mode["sides"]).reshape(-1, 3)
+        cell = decomposition_of(DRAWN).vertex_cell
         cracked = {(crack.i, crack.j) for crack in DRAWN.cracks}
-        crossed = [(a, b) for a, b in DRAWN.left_of if cell[a] != cell[b]]
-        sides = [(a, b) for a, b in DRAWN.left_of if (min(a, b), max(a, b)) in cracked]
-        border = [side for side in crossed if side not in sides]
-        # Every piece is two points and a gap.
-        assert len(lines["crack"]["x"]) == 3 * len(sides)
-        assert len(lines["border"]["x"]) == 3 * len(border)
+        for face, own in zip(DRAWN.faces.tolist(), lines.tolist(), strict=True):
+            for a, b, line in zip(face, [*face[1:], face[0]], own, strict=True):
+                crossed = Line.BORDER if cell[a] != cell[b] else Line.NONE
+                assert line == (Line.CRACK if (min(a, b), max(a, b)) in cracked else crossed)
 
-    def test_numbers_stand_on_their_cells(self, tmp_path: Path) -> None:
-        show(saved(DRAWN, tmp_path), "-o", tmp_path / "x.html")
-        (texts,) = [t for t in traces(tmp_path / "x.html") if t.get("mode") == "text"]
-        # Numbers hover over their vertex; this surface is flat.
-        offsets = points(texts)[:, None, :2] - DRAWN.vertices[None, :, :2]
-        distances = np.linalg.norm(offsets, axis=2)
-        assert distances.min(axis=1).max() < 1e-9
-        nearest = distances.argmin(axis=1).tolist()
-        numbered = {f"cell {text}": v for text, v in zip(texts["text"], nearest, strict=True)}
-        cells = holding(decompose(DRAWN, "x"))
-        assert numbered.keys() == cells.keys() - {"unreachable"}
-        assert all(vertex in cells[name] for name, vertex in numbered.items())
+    def test_numbers_stand_on_their_cells(self) -> None:
+        mesh, texts = classed_mesh(DRAWN), draw_cells(DRAWN, decomposition_of(DRAWN)).texts
+        assert {text.text for text in texts} == {str(cell.id) for cell in decompose(DRAWN).cells}
+        for text in texts:
+            (vertex,) = np.flatnonzero((DRAWN.vertices == text.at).all(axis=1))
+            assert mesh.labels[vertex] == text.label == int(text.text)
 
     def test_an_instance_finds_its_surface(self, tmp_path: Path) -> None:
         folder = tmp_path / "sub"
@@ -109,27 +106,68 @@ class TestCells:
         assert (tmp_path / "i.svg").read_bytes() == (tmp_path / "s.svg").read_bytes()
 
 
-def test_colors_of_neighbors_differ() -> None:
-    few = {0: {1, 2}, 1: {0}, 2: {0}}
-    assert len(set(assign(few))) == 3
-    ring = {k: {(k - 1) % 30, (k + 1) % 30} for k in range(30)}
-    colors = assign(ring)
-    assert all(colors[a] != colors[b] for a, near in ring.items() for b in near)
-    assert set(colors) == set(AREAS)
+def test_a_color_has_one_paint_in_every_picture() -> None:
+    """Cells of one color, its domain, its segments in a division and in a plan, and the graph."""
+    surface = drawn("AABB AABB", {"A": [2], "B": [1]})
+    paints = paints_of(surface.colors)
+    graph = decomposition_of(surface)
+    solution = cellcolor.solve(surface).solution
+    plan = cellcolor.Plan(tuple(own[0] for own in surface.vertex_colors))
+    seen = {
+        (view.classes[number].rgb, color)
+        for view, colors in (
+            (draw_cells(surface, graph).mesh, [2, 1]),
+            (draw_color(surface, 1).mesh, [1]),
+            (draw_segments(surface, graph, solution).mesh, [2, 1]),
+            (draw_plan(surface, plan).mesh, [2, 1]),
+        )
+        for number, color in enumerate(colors)
+    }
+    names = surface.colors
+    assert seen == {(paints[names[1]], 1), (paints[names[2]], 2)}
+    rims = {outline.rgb for outline in draw_graph(graph.instance).outlines}
+    assert {paints[names[1]], paints[names[2]]} < rims
+    assert len(set(paints_of(list(map(str, range(16)))).values())) == 16
+
+
+def test_where_several_colors_are_available_their_paints_are_mixed_and_paler() -> None:
+    assert mixed(["#204060"]) == "#204060"
+    # The mean is 30 50 70; half of a half of the way from there to FF.
+    assert mixed(["#204060", "#406080"]) == "#647C94"
+    assert mixed([]) == "#FFFFFF"
+
+
+def test_marked_segments_of_a_plan() -> None:
+    """Their borders are drawn, and nobody else's; the vertices have a text each."""
+    surface = drawn("AABBCC AABBCC", {"A": [0], "B": [1], "C": [2]})
+    plan = cellcolor.Plan(tuple(own[0] for own in surface.vertex_colors))
+    picture = draw_plan(surface, plan, marked=(0,))
+    assert picture.mesh is not None
+    first, second = np.sort(picture.mesh.labels[surface.faces], axis=1).T[[0, -1]]
+    assert set(zip(first.tolist(), second.tolist(), strict=True)) > {(0, 1), (1, 2)}
+    for face, lines in zip(surface.faces.tolist(), picture.mesh.lines.tolist(), strict=True):
+        for a, b, line in zip(face, [*face[1:], face[0]], lines, strict=True):
+            ends = {int(picture.mesh.labels[a]), int(picture.mesh.labels[b])}
+            wanted = Line.MARKED if 0 in ends else Line.BORDER
+            assert line == (wanted if len(ends) == 2 else Line.NONE)
+    assert [text.text for text in picture.texts if text.label is None] == ["vertex 0"]
+    with pytest.raises(InputError, match="marked: 12 is not among 0 to 11"):
+        cellcolor.show(surface, plan=plan, marked=(12,))
+    with pytest.raises(InputError, match="marked: the picture cells does not take it"):
+        cellcolor.show(surface, marked=(0,))
 
 
 @pytest.mark.parametrize("name", ["blue", "1"])
 def test_domain_of_a_color(name: str, tmp_path: Path) -> None:
     show(saved(DRAWN, tmp_path), "--color", name, "-o", tmp_path / "x.html")
-    found = meshes(tmp_path / "x.html")
+    found = areas(tmp_path / "x.html")
     own = {v for v, colors in enumerate(DRAWN.vertex_colors) if 1 in colors}
     none = {v for v, colors in enumerate(DRAWN.vertex_colors) if not colors}
-    assert vertices_in(found["blue"], DRAWN) == own
-    assert vertices_in(found["unreachable"], DRAWN) == none
-    assert vertices_in(found["other colors only"], DRAWN) == set(range(30)) - own - none
-    lines = {t["name"]: t for t in traces(tmp_path / "x.html") if t.get("mode") == "lines"}
+    rest = set(range(30)) - own - none
+    assert found == {"blue": own, "unreachable": none, "other colors only": rest}
+    (mode,) = page_data((tmp_path / "x.html").read_text())["modes"]
     # Only 4-5 is a crack of blue; it is on the mesh's border and has one triangle.
-    assert len(lines["crack"]["x"]) == 3
+    assert (unpacked(mode["sides"]) == Line.CRACK).sum() == 1
 
 
 class TestSolution:
@@ -142,9 +180,10 @@ class TestSolution:
         """The segment of each vertex that is painted."""
         return {
             vertex: int(name.removeprefix("segment "))
-            for name, trace in meshes(page).items()
+            for name, own in areas(page).items()
             if name.startswith("segment ")
-            for vertex in vertices_in(trace, surface)
+            for vertex in own
+            if vertex < len(surface.vertices)  # the first ones where the mesh is refined
         }
 
     @pytest.mark.parametrize(
@@ -237,7 +276,7 @@ class TestSolution:
         (tmp_path / "i.json").write_text(shifted.to_json())
         file, _ = self.solved(tmp_path / "i.json", tmp_path)
         show(tmp_path / "i.json", file, "-o", tmp_path / "x.html")
-        cut = vertices_in(meshes(tmp_path / "x.html")["cut between segments"], surface)
+        cut = areas(tmp_path / "x.html")["cut between segments"]
         assert cut == {v for v, colors in enumerate(surface.vertex_colors) if len(colors) == 2}
 
 
@@ -245,7 +284,7 @@ class TestReasons:
     def test_of_a_side_file(self, tmp_path: Path) -> None:
         path, arrays = side_file(tmp_path)
         show(path, "--reason", "-o", tmp_path / "x.html")
-        found = {n: vertices_in(t, DRAWN) for n, t in meshes(tmp_path / "x.html").items()}
+        found = areas(tmp_path / "x.html")
         valid = {v for v, row in enumerate(arrays["node_color"]) if (row >= 0).any()}
         assert found == {
             "reachable": valid,
@@ -257,7 +296,7 @@ class TestReasons:
     def test_of_one_branch(self, branch: str, tmp_path: Path) -> None:
         path, arrays = side_file(tmp_path)
         show(path, "--reason", "--branch", branch, "-o", tmp_path / "x.html")
-        found = {n: vertices_in(t, DRAWN) for n, t in meshes(tmp_path / "x.html").items()}
+        found = areas(tmp_path / "x.html")
         codes = arrays["reasons"][:, 1]
         names = {"valid": 0, "torque": 2, "ground": 3}
         assert found == {n: set(np.flatnonzero(codes == c).tolist()) for n, c in names.items()}
@@ -270,12 +309,11 @@ class TestReasons:
         scene = small_wok(tmp_path)
         show(scene, "--reason", "--branch", "0", "-o", tmp_path / "x.html")
         result = build_surface(scene)
-        found = meshes(tmp_path / "x.html")
+        found = areas(tmp_path / "x.html")
         taken = result.node_color[:, 0] < 0
         for reason in Reason:
             if reason != Reason.VALID:
                 own = set(np.flatnonzero(result.reasons[:, 0] == reason).tolist())
-                trace = found.get(reason.text)
-                assert own == (vertices_in(trace, result.surface) if trace else set())
+                assert own == found.get(reason.text, set())
         valid = np.flatnonzero((result.reasons[:, 0] == Reason.VALID) & ~taken)
-        assert vertices_in(found["valid"], result.surface) == set(valid.tolist())
+        assert found["valid"] == set(valid.tolist())

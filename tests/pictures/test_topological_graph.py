@@ -2,35 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from library import PAPER
-from numpy.typing import NDArray
 from pages import (
     DRAWN,
     saved,
     show,
-    traces,
 )
 
 from cellcolor.data.instance import Instance
+from cellcolor.pictures.topological_graph import draw_graph
 
 
 class TestGraph:
     @pytest.mark.parametrize(
         "name", ["ring", "three-loops", "crossing-zeros", "crack-partial", "annulus"]
     )
-    def test_darts_stand_around_their_cell_in_cyclic_order(self, name: str, tmp_path: Path) -> None:
-        path = PAPER / f"{name}.json"
-        show(path, "--graph", "-o", tmp_path / "x.html")
-        places: dict[str, NDArray[np.float64]] = {}
-        for trace in traces(tmp_path / "x.html"):
-            if trace.get("mode") == "text":
-                at = np.stack([np.asarray(trace["x"]), np.asarray(trace["y"])], axis=1)
-                places |= dict(zip(trace["text"], at, strict=True))
-        instance = Instance.read(path)
+    def test_darts_stand_around_their_cell_in_cyclic_order(self, name: str) -> None:
+        instance = Instance.read(PAPER / f"{name}.json")
+        places = {text: at for text, at, _ in draw_graph(instance).texts}
         darts = [f"{dart:+d}" for cell in instance.cells for loop in cell.loops for dart in loop]
         assert places.keys() == {str(cell.id) for cell in instance.cells} | set(darts)
         for cell in instance.cells:
@@ -44,23 +38,26 @@ class TestGraph:
                 start = own.index(loop[0])
                 assert tuple(own[start:] + own[:start]) == loop
 
-    def test_one_line_for_each_joinable_color(self, tmp_path: Path) -> None:
-        path = PAPER / "crack-partial.json"
-        show(path, "--graph", "-o", tmp_path / "x.html")
-        instance = Instance.read(path)
-        lines = [
-            (trace["name"], trace["line"].get("dash"))
-            for trace in traces(tmp_path / "x.html")
-            if trace.get("mode") == "lines" and trace["name"]
-        ]
+    def test_one_line_for_each_joinable_color(self) -> None:
+        instance = Instance.read(PAPER / "crack-partial.json")
+        lines = [(line.name, line.dashed) for line in draw_graph(instance).lines]
         wanted = []
         for edge in instance.edges:
             colors = instance.joinable(edge.id)
-            wanted += [(f"{c}: {instance.colors[c]}", None) for c in colors]
-            wanted += [] if colors else [("dead edge", "4px")]
-        assert sorted(lines, key=str) == sorted(wanted, key=str)
-        assert {dash for _, dash in lines} == {None, "4px"}
-        assert list(dict.fromkeys(lines)) == sorted(set(lines), key=str)  # the legend's order
+            wanted += [(f"{c}: {instance.colors[c]}", False) for c in colors]
+            wanted += [] if colors else [("dead edge", True)]
+        assert sorted(lines) == sorted(wanted)
+        assert {dashed for _, dashed in lines} == {False, True}
+        assert list(dict.fromkeys(lines)) == sorted(set(lines))  # the legend's order
+
+    def test_a_page_has_the_drawing_and_its_legend(self, tmp_path: Path) -> None:
+        """It needs no script, and what is written in it stays text."""
+        instance = replace(Instance.read(PAPER / "ring.json"), colors=("<b>", "blue", "green"))
+        (tmp_path / "ring.json").write_text(instance.to_json())
+        show(tmp_path / "ring.json", "--graph", "-o", tmp_path / "x.html")
+        page = (tmp_path / "x.html").read_text(encoding="utf-8")
+        assert page.count("<svg") == 1 and "class View" not in page
+        assert "0: &lt;b&gt;</span>" in page and "<b>" not in page
 
     def test_a_surface_and_a_graph_without_cells(self, tmp_path: Path) -> None:
         show(saved(DRAWN, tmp_path), "--graph", "-o", tmp_path / "x.svg")

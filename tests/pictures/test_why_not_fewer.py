@@ -22,13 +22,14 @@ from cellcolor.lab.families import blobs
 from cellcolor.pictures.picture import Picture3D
 
 
-def painted(drawing: Drawing, surface: LabelledSurface) -> dict[str, set[int]]:
+def painted(drawing: Drawing) -> dict[str, set[int]]:
     """The vertices inside each entry of the legend."""
-    assert isinstance(drawing.picture, Picture3D)
-    place = {tuple(point): vertex for vertex, point in enumerate(surface.vertices.tolist())}
+    assert isinstance(drawing.picture, Picture3D) and drawing.picture.mesh is not None
+    mesh = drawing.picture.mesh
     return {
-        layer.name: {place[p] for p in map(tuple, np.asarray(layer.points).tolist()) if p in place}
-        for layer in drawing.picture.layers
+        one.name: own
+        for number, one in enumerate(mesh.classes)
+        if (own := set(np.flatnonzero(mesh.labels == number).tolist()))
     }
 
 
@@ -36,7 +37,7 @@ def test_a_conflict_has_four_areas_and_two_connections_that_cross() -> None:
     surface = blobs(5, size=20, thin=True)
     result = cellcolor.solve(surface)
     drawing = cellcolor.show(result, view="why")
-    layers = painted(drawing, surface)
+    layers = painted(drawing)
     (bound,) = [b for b in result.solution.bounds or () if b.kind == "conflicts"]
     assert bound.certificate is not None
     conflict = bound.certificate["parts"][0]["conflicts"][0]
@@ -62,7 +63,7 @@ def test_cells_that_cannot_share_a_segment_have_their_numbers() -> None:
     result = cellcolor.solve(path)
     (bound,) = result.solution.bounds or ()
     assert bound.certificate is not None
-    layers = painted(cellcolor.show(result, view="why"), LabelledSurface.read(path))
+    layers = painted(cellcolor.show(result, view="why"))
     marked = {int(m[1]) for name in layers if (m := re.match(r"cell (\d+): ", name))}
     assert marked == set(bound.certificate["cells"])
 

@@ -28,6 +28,7 @@ from cellcolor.data.surface import LabelledSurface
 CHROMIUM = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
 )
+ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 DESKTOP, PHONE = (1400, 900), (390, 844)
 
 
@@ -38,7 +39,7 @@ def opened(file: Path, size: tuple[int, int]) -> Iterator[tuple[Any, list[str]]]
     if CHROMIUM is None:
         pytest.skip("there is no chromium to open pages with")
     with api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
         page = browser.new_page(viewport={"width": size[0], "height": size[1]})
         faults: list[str] = []
         page.on("pageerror", lambda error: faults.append(str(error)))
@@ -71,40 +72,36 @@ def saved(surface: LabelledSurface, folder: Path) -> Path:
     return path
 
 
-def traces(path: Path) -> list[Document]:
-    """The traces of a page, arrays decoded."""
-    page = path.read_text(encoding="utf-8")
-    start = page.rindex("Plotly.newPlot(")
-    found, _ = json.JSONDecoder().raw_decode(page, page.index("[", start))
-    return [{name: decoded(value) for name, value in trace.items()} for trace in found]
+def page_data(page: str) -> Document:
+    """What a page's scripts draw."""
+    (text,) = re.findall(r'<script type="application/json" id="data">(.*?)</script>', page)
+    return json.loads(text)
 
 
-def decoded(value: Any) -> Any:
-    if isinstance(value, dict) and "bdata" in value:
-        return np.frombuffer(base64.b64decode(value["bdata"]), np.dtype(value["dtype"]))
-    return value
+def unpacked(packed: Document) -> NDArray[Any]:
+    return np.frombuffer(base64.b64decode(packed["base64"]), "<" + packed["kind"])
 
 
-def meshes(path: Path) -> dict[str, Document]:
-    """The areas of a page, by the first words of their names."""
-    found = [trace for trace in traces(path) if trace["type"] == "mesh3d"]
-    return {re.split(r"  |: | \{", trace["name"])[0]: trace for trace in found}
+def areas(path: Path) -> dict[str, set[int]]:
+    """The vertices of each area of a page, by the first words of its name."""
+    (mode,) = page_data(path.read_text(encoding="utf-8"))["modes"]
+    labels = unpacked(mode["labels"])
+    return {
+        re.split(r", | \{|: ", own["name"])[0]: set(np.flatnonzero(labels == number).tolist())
+        for number, own in enumerate(mode["classes"])
+        if (labels == number).any()
+    }
 
 
-def points(trace: Document) -> NDArray[np.float64]:
-    return np.stack([np.asarray(trace[axis], dtype=float) for axis in "xyz"], axis=1)
-
-
-def vertices_in(trace: Document, surface: LabelledSurface) -> set[int]:
-    """The vertices of the surface that are corners of an area."""
-    corners = {tuple(point) for point in points(trace).tolist()}
-    return {v for v, place in enumerate(surface.vertices.tolist()) if tuple(place) in corners}
-
-
-def area_of(trace: Document) -> float:
-    corners = points(trace)[np.stack([trace[corner] for corner in "ijk"], axis=1)]
-    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return float(np.linalg.norm(doubled, axis=1).sum() / 2)
+def solids(path: Path) -> dict[str, tuple[NDArray[np.float64], NDArray[np.int64]]]:
+    """Points and triangles of each solid of a page."""
+    return {
+        layer["name"]: (
+            unpacked(layer["points"]).reshape(-1, 3).astype(float),
+            unpacked(layer["triangles"]).reshape(-1, 3).astype(int),
+        )
+        for layer in page_data(path.read_text(encoding="utf-8"))["layers"]
+    }
 
 
 def side_file(folder: Path, change: dict[str, Any] | None = None) -> tuple[Path, Document]:

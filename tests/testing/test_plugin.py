@@ -16,6 +16,7 @@ from xml.etree import ElementTree
 
 import pytest
 from meshes import drawn
+from pages import page_data
 
 import cellcolor
 from cellcolor.data.surface import LabelledSurface
@@ -34,7 +35,7 @@ LOADED = (
 def loaded() -> None:
     """What the runs need is imported once: they are forked, and start with all of it."""
     cellcolor.Oracle(ROW).judge([0] * 18)
-    importlib.import_module("cellcolor.pictures.static")
+    importlib.import_module("cellcolor.pictures.viewer.page")
 
 
 def written(
@@ -77,8 +78,13 @@ def test_a_plan_that_can_be_beaten_fails_with_the_place_and_a_picture(tmp_path: 
     assert "1 failed" in out
     assert "can be beaten: 3 segments, 2 lift-offs, 2 fewer are proved to be enough" in out
     for word in ("picture", "better"):
-        picture = re.search(rf"{word}: (.*\.png)", out)
-        assert picture and Path(picture[1]).read_bytes().startswith(b"\x89PNG")
+        picture = re.search(rf"{word}: (.*\.html)", out)
+        assert picture
+        (mode,) = page_data(Path(picture[1]).read_text())["modes"]
+        marks = {text["text"] for text in mode["texts"] if text["kind"] == "mark"}
+        # Of two of the plan's three segments, which are two columns wide each.
+        segments = [int(mark.removeprefix("vertex ")) % 6 // 2 for mark in marks]
+        assert len(segments) == len(set(segments)) == 2
     # The lines of cellcolor's own functions are left out: the test's line is the last one.
     assert "surface_under_test.py" not in out
 
@@ -213,7 +219,7 @@ def test_a_fixture_of_a_module_and_a_picture_named_after_the_test(tmp_path: Path
         "    row.assert_valid([1] * 18)\n",
     )
     assert "1 failed, 1 passed" in out
-    assert "pictures/test-planner-py-test-bad-a-b.png" in out
+    assert "pictures/test-planner-py-test-bad-a-b.html" in out
 
 
 def test_the_time_limit_is_an_option(tmp_path: Path) -> None:

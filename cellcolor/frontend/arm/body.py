@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
+import trimesh
 
 from cellcolor.arrays import Array, Index
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.capsules import capsule_around, capsules_around
 from cellcolor.frontend.arm.link_mesh import find_mesh, load_link_mesh
-from cellcolor.frontend.arm.polyhedron import Polyhedron, box, convex_hull
+from cellcolor.frontend.arm.shape import Kind, Shape, convex_hull
 from cellcolor.frontend.arm.urdf import LinkShape, Urdf
 from cellcolor.frontend.setup import MeshCollision
 
@@ -28,8 +28,7 @@ class Body:
     ``start`` and ``end`` (3,) in m are in the frame of ``joint`` (0 is the world, the
     others are the frames behind the joints). A sphere is a capsule whose ends coincide.
 
-    With a ``solid``, which hangs on the same frame, the body is instead all that is within ``skin``
-    (m) of that, and the capsule is one around it.
+    With a ``solid``, in the frame of the joint, the body is that, and the capsule is around it.
     """
 
     link: str
@@ -38,13 +37,24 @@ class Body:
     end: Array
     radius: float
     flat: bool
-    solid: Polyhedron | None = None
-    skin: float = 0.0
+    solid: Shape | None = None
 
     @cached_property
     def length(self) -> float:
         """Distance between the ends in m."""
         return float(np.linalg.norm(self.end - self.start))
+
+    @cached_property
+    def shape(self) -> Shape:
+        """The shape in the frame of the joint."""
+        if self.solid is not None:
+            return self.solid
+        middle = (self.start + self.end) / 2
+        if not self.length:
+            return Shape("sphere", (self.radius,), origin=middle)
+        turn = trimesh.geometry.align_vectors((0, 0, 1), self.end - self.start)[:3, :3]
+        kind: Kind = "cylinder" if self.flat else "capsule"
+        return Shape(kind, (self.radius, self.length), rotation=turn, origin=middle)
 
 
 @dataclass(frozen=True)
@@ -53,9 +63,9 @@ class StandIn:
 
     Attributes:
         link, file: the link, and the file of its mesh.
-        chosen: hull, exact or capsules.
+        chosen: hull or exact.
         vertices, faces: the mesh, in the frame of the joint that carries it, m.
-        bodies: what collides.
+        body: what collides.
     """
 
     link: str
@@ -63,10 +73,10 @@ class StandIn:
     chosen: MeshCollision
     vertices: Array
     faces: Index
-    bodies: tuple[Body, ...]
+    body: Body
 
 
-def mesh_bodies(
+def mesh_body(
     link: str, joint: int, file: Path, vertices: Array, faces: Index, chosen: MeshCollision
 ) -> StandIn:
     """What stands for a mesh, given in the frame of its joint, m.
@@ -74,20 +84,21 @@ def mesh_bodies(
     Raises:
         InputError: the mesh lies in a plane, so there is no hull of it.
     """
-    if chosen == "capsules":
-        capsules = capsules_around(vertices, faces)
-        bodies = tuple(Body(link, joint, *capsule, flat=False) for capsule in capsules)
-    else:
-        solid = convex_hull(vertices) if chosen == "hull" else Polyhedron(vertices, faces)
-        if solid is None:
-            message = "the mesh lies in a plane, so it has no hull: choose 'exact' for its link"
-            raise InputError(str(file), None, message)
-        bodies = (_polyhedral(link, joint, solid),)
-    return StandIn(link, file, chosen, vertices, faces, bodies)
+    exact = Shape("mesh", vertices=vertices, faces=faces)
+    solid = exact if chosen == "exact" else convex_hull(vertices)
+    if solid is None:
+        message = "the mesh lies in a plane, so it has no hull: choose 'exact' for its link"
+        raise InputError(str(file), None, message)
+    return StandIn(link, file, chosen, vertices, faces, _solid_body(link, joint, solid))
 
 
-def _polyhedral(link: str, joint: int, solid: Polyhedron) -> Body:
-    return Body(link, joint, *capsule_around(solid.vertices), flat=False, solid=solid)
+def _solid_body(link: str, joint: int, solid: Shape) -> Body:
+    """A hull or a mesh as a body, its capsule around the box that is around it."""
+    corners = solid.corners
+    middle, edges = corners.mean(axis=0), corners[[1, 2, 4]] - corners[0]
+    across, thick, along = sorted(edges, key=np.linalg.norm)
+    radius = float(np.hypot(np.linalg.norm(across), np.linalg.norm(thick))) / 2
+    return Body(link, joint, middle - along / 2, middle + along / 2, radius, False, solid)
 
 
 def _round_bodies(
@@ -182,15 +193,16 @@ def place_shapes(
             joint, turn = int(at.parentJoint), np.array(at.placement.rotation)
             center = np.array(at.placement.translation)
             if shape.kind == "box":
-                corners, sides = box(shape.sizes)
-                solid = Polyhedron(corners @ turn.T + center, sides)
-                bodies.append(_polyhedral(link, joint, solid))
+                corners = trimesh.creation.box(shape.sizes).vertices
+                solid = convex_hull(corners @ turn.T + center)
+                assert solid is not None  # no side of it is 0
+                bodies.append(_solid_body(link, joint, solid))
                 continue
             place = f"link[{link}].collision[{number}].mesh"
             file = find_mesh(shape.file, tree.file, place, tree.folder, shapes.package_folders)
             vertices, faces = load_link_mesh(file, shape.sizes)
             chosen = shapes.chosen_of.get(link, shapes.chosen)
             own_mesh = (vertices @ turn.T + center, faces)
-            stand_ins.append(mesh_bodies(link, joint, file, *own_mesh, chosen))
-            bodies += stand_ins[-1].bodies
+            stand_ins.append(mesh_body(link, joint, file, *own_mesh, chosen))
+            bodies.append(stand_ins[-1].body)
     return tuple(bodies), tuple(stand_ins)

@@ -34,7 +34,6 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, unit
 from cellcolor.frontend.arm.kinematics import (
-    bytes_of_poses,
     forward,
     nearest_points,
     signed_task_determinant,
@@ -130,7 +129,7 @@ def missing(robot: Robot, solutions: Array) -> Index:
         solutions: (n, s, joints) all that were found, in rad, NaN for none.
     """
     lost = np.zeros(len(solutions), dtype=np.int64)
-    for rows in chunks(len(solutions), solutions.shape[1] * bytes_of_poses(robot.joints)):
+    for rows in chunks(len(solutions), solutions.shape[1]):
         part = solutions[rows]
         there = np.nonzero(~np.isnan(part[:, :, 0]))
         poses = forward(robot, part[there])
@@ -160,7 +159,6 @@ _AROUND /= np.linalg.norm(_AROUND[0])
 _FARTHER = 5.0  # times what the axes are off: so far from a pose are those around it
 _ANOTHER = 0.1  # rad; an ideal solution of a pose around that is farther away is a start of its own
 _ELBOW_AND_WRIST = 3  # the bits of both in a branch's index
-_MOST_SOLUTIONS = 16  # of six revolute joints
 
 
 @dataclass(frozen=True)
@@ -215,9 +213,7 @@ class NearIdeal:
 
     def _all(self, points: Array, directions: Array) -> Array:
         """All solutions, (n, 8, joints) by signs or (n, s, joints) without, in batches."""
-        most = _MOST_SOLUTIONS if self.signs is None else len(BRANCHES)
-        bytes_each = 48 * self.robot.joints * most * (3 + len(_AROUND))
-        batches, parts = list(chunks(max(len(points), 1), bytes_each)), []
+        batches, parts = list(chunks(max(len(points), 1), 3 + len(_AROUND))), []
         for batch in batches:
             starts = self._starts(points[batch], directions[batch])
             parts.append(self._from(starts, points[batch], directions[batch]))

@@ -62,11 +62,6 @@ class Poses:
         )
 
 
-def bytes_of_poses(joints: int) -> int:
-    """What one configuration takes at most: its poses, Jacobians and what they are made from."""
-    return 384 * (joints + 1)
-
-
 def forward(robot: Robot, configurations: Array) -> Poses:
     """Poses of all frames for configurations (n, joints) in rad, prismatic joints in m."""
     n = len(configurations)

@@ -14,7 +14,6 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.frontend.arm.kinematics import (
     TASK_JOINTS,
     Poses,
-    bytes_of_poses,
     forward,
     task_jacobian,
 )
@@ -63,7 +62,7 @@ def polished(
     """
     found = np.full_like(starts, np.nan)
     there = np.nonzero(~np.isnan(starts[:, :, 0]))
-    for part in chunks(len(there[0]), bytes_of_poses(robot.joints)):
+    for part in chunks(len(there[0])):
         pose, number = (index[part] for index in there)
         start = starts[pose, number]
         end = _polished(robot, start, points[pose], directions[pose], farthest, steps)
@@ -155,7 +154,7 @@ def merged(solutions: Array) -> Array:
     """
     packed = _packed(solutions, ~np.isnan(solutions[:, :, 0]))
     kept = ~np.isnan(packed[:, :, 0])
-    for rows in chunks(len(packed), 32 * TASK_JOINTS * packed.shape[1]):
+    for rows in chunks(len(packed), packed.shape[1]):
         five, own = packed[rows, :, :TASK_JOINTS], kept[rows]
         for later in range(1, five.shape[1]):
             off = _largest_turn(five[:, :later] - five[:, later : later + 1])

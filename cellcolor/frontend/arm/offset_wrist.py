@@ -116,7 +116,7 @@ class OffsetWrist(InverseKinematics):
         branches: NDArray[np.intp] | None = None,  # noqa: ARG002
     ) -> Array:
         parts = [np.empty((0, 0, 6))]
-        batches = list(chunks(len(points), 4096 * _ANGLES))
+        batches = list(chunks(len(points), _ANGLES))
         for rows in batches:
             starts = self._starts(points[rows], directions[rows])
             found = polished(self._robot, starts, points[rows], directions[rows], _FARTHEST)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -194,23 +194,3 @@ class Robot:
     def has_solids(self) -> bool:
         """Whether bodies with flat faces are among the collision shapes."""
         return any(body.solid is not None for body in self.bodies)
-
-
-def wider(robot: Robot, by: float) -> Robot:
-    """The robot with all that is nearer than a distance (m) to its bodies.
-
-    A cylinder stays one, longer and wider, so that it has a little more than that at its rims.
-    """
-    if by == 0.0:
-        return robot
-    return replace(robot, bodies=tuple([wider_body(body, by) for body in robot.bodies]))
-
-
-def wider_body(body: Body, by: float) -> Body:
-    """One of its bodies; see :func:`wider`."""
-    if body.solid is not None:
-        return replace(body, radius=body.radius + by, skin=body.skin + by)
-    if not body.flat:
-        return replace(body, radius=body.radius + by)
-    along = by * (body.end - body.start) / body.length
-    return replace(body, start=body.start - along, end=body.end + along, radius=body.radius + by)

@@ -27,7 +27,6 @@ from cellcolor.arrays import Array
 from cellcolor.frontend.arm.inverse import pose_at_zero
 from cellcolor.frontend.arm.kinematics import (
     Poses,
-    bytes_of_poses,
     forward,
     nearest_points,
     signed_task_determinant,
@@ -100,7 +99,7 @@ class Signs:
         """
         found = np.empty(len(configurations), dtype=np.intp)
         determinants = np.empty(len(configurations))
-        for rows in chunks(len(found), bytes_of_poses(robot.joints)):
+        for rows in chunks(len(found)):
             found[rows], determinants[rows] = self._branches(forward(robot, configurations[rows]))
         return found, determinants
 

@@ -6,23 +6,16 @@ from abc import abstractmethod
 from pathlib import Path
 from typing import Literal
 
-import fcl
 import numpy as np
 import trimesh
-from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
-from cellcolor.frontend.arm.body import Body
-from cellcolor.frontend.arm.kinematics import Poses
-from cellcolor.frontend.arm.polyhedron import one_of_each_part
-from cellcolor.frontend.contact.collision import HalfSpace, lowest_points
-from cellcolor.frontend.contact.fcl_bodies import body_poses, mesh_model
-from cellcolor.frontend.contact.solids import Distances, Solid, mesh_solid
+from cellcolor.frontend.arm.shape import Kind, Shape
 from cellcolor.frontend.parts.mesh_file import load_mesh
-from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
+from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import grid_mesh
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.tables import Length, Positive, Registry
@@ -51,10 +44,10 @@ class Obstacle(Placement):
             InputError: there is no such obstacle.
         """
 
-    def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Solid:
+    def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shape:
         """What the arm is tested against, in the world; arguments and errors as for the shell."""
         vertices, faces = self.shell(folder, deadline)
-        return mesh_solid(vertices, faces, deadline).placed(self)
+        return self.standing(Shape("mesh", vertices=vertices, faces=faces))
 
 
 class MeshObstacle(Obstacle):
@@ -73,13 +66,12 @@ class MeshObstacle(Obstacle):
 class Primitive(Obstacle):
     """A filled shape that is centered on its position."""
 
-    @abstractmethod
-    def _shape(self) -> fcl.CollisionGeometry:
-        """The shape for fcl."""
+    kind: Kind
 
+    @property
     @abstractmethod
-    def _outside(self, local: Array) -> Array:
-        """How far points (k, 3) lie outside in each of j perpendicular directions, (k, j), m."""
+    def _sizes(self) -> tuple[float, ...]:
+        """Of the shape, see :class:`~cellcolor.frontend.arm.shape.Shape`."""
 
     @abstractmethod
     def _mesh(self) -> trimesh.Trimesh:
@@ -90,15 +82,9 @@ class Primitive(Obstacle):
         mesh = self._mesh()
         return np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)
 
-    def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Solid:  # noqa: ARG002
+    def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shape:  # noqa: ARG002
         """The filled shape."""
-
-        def distances(points: Array) -> tuple[Array, Array]:
-            distance = np.linalg.norm(np.maximum(self._outside(points), 0.0), axis=1)
-            return distance, distance
-
-        _, width, _ = sorted(np.ptp(self._mesh().vertices, axis=0).tolist())
-        return Solid(self._shape(), width, distances).placed(self)
+        return self.standing(Shape(self.kind, self._sizes))
 
 
 class BoxObstacle(Primitive):
@@ -107,11 +93,9 @@ class BoxObstacle(Primitive):
     kind: Literal["box"] = "box"
     size_m: tuple[Length, Length, Length]
 
-    def _shape(self) -> fcl.CollisionGeometry:
-        return fcl.Box(*self.size_m)
-
-    def _outside(self, local: Array) -> Array:
-        return np.asarray(np.abs(local) - np.array(self.size_m) / 2)
+    @property
+    def _sizes(self) -> tuple[float, ...]:
+        return self.size_m
 
     def _mesh(self) -> trimesh.Trimesh:
         return trimesh.creation.box(self.size_m)
@@ -124,12 +108,9 @@ class CylinderObstacle(Primitive):
     radius_m: Length
     height_m: Length
 
-    def _shape(self) -> fcl.CollisionGeometry:
-        return fcl.Cylinder(self.radius_m, self.height_m)
-
-    def _outside(self, local: Array) -> Array:
-        across = np.hypot(local[:, 0], local[:, 1]) - self.radius_m
-        return np.column_stack([across, np.abs(local[:, 2]) - self.height_m / 2])
+    @property
+    def _sizes(self) -> tuple[float, ...]:
+        return (self.radius_m, self.height_m)
 
     def _mesh(self) -> trimesh.Trimesh:
         whole = trimesh.creation.cylinder(self.radius_m, self.height_m, sections=20)
@@ -143,11 +124,9 @@ class SphereObstacle(Primitive):
     kind: Literal["sphere"] = "sphere"
     radius_m: Length
 
-    def _shape(self) -> fcl.CollisionGeometry:
-        return fcl.Sphere(self.radius_m)
-
-    def _outside(self, local: Array) -> Array:
-        return np.asarray(np.linalg.norm(local, axis=1)[:, None] - self.radius_m)
+    @property
+    def _sizes(self) -> tuple[float, ...]:
+        return (self.radius_m,)
 
     def _mesh(self) -> trimesh.Trimesh:
         return trimesh.creation.icosphere(subdivisions=2, radius=self.radius_m)
@@ -160,13 +139,9 @@ class CapsuleObstacle(Primitive):
     radius_m: Length
     axis_m: Length
 
-    def _shape(self) -> fcl.CollisionGeometry:
-        return fcl.Capsule(self.radius_m, self.axis_m)
-
-    def _outside(self, local: Array) -> Array:
-        off = local.copy()
-        off[:, 2] -= np.clip(local[:, 2], -self.axis_m / 2, self.axis_m / 2)
-        return np.asarray(np.linalg.norm(off, axis=1)[:, None] - self.radius_m)
+    @property
+    def _sizes(self) -> tuple[float, ...]:
+        return (self.radius_m, self.axis_m)
 
     def _mesh(self) -> trimesh.Trimesh:
         whole = trimesh.creation.capsule(self.axis_m, self.radius_m, count=[20, 20])
@@ -182,23 +157,9 @@ class ConeObstacle(Primitive):
     radius_m: Length
     height_m: Length
 
-    def _shape(self) -> fcl.CollisionGeometry:
-        return fcl.Cone(self.radius_m, self.height_m)
-
-    def _outside(self, local: Array) -> Array:
-        """Distances (k, 1) from the triangle that turns about the axis, 0 inside."""
-        place = np.column_stack([np.hypot(local[:, 0], local[:, 1]), local[:, 2]])
-        rim = np.array([self.radius_m, -self.height_m / 2])
-        top = np.array([0.0, self.height_m / 2])
-        slope = np.array([self.height_m, self.radius_m])  # out of the flank, not of length 1
-        inside = (place[:, 1] >= rim[1]) & ((place - top) @ slope <= 0)
-        to_base = place - np.column_stack(
-            [np.minimum(place[:, 0], rim[0]), np.full(len(place), rim[1])]
-        )
-        way = np.clip((place - rim) @ (top - rim) / ((top - rim) @ (top - rim)), 0.0, 1.0)
-        to_flank = place - (rim + way[:, None] * (top - rim))
-        nearest = np.minimum(np.linalg.norm(to_base, axis=1), np.linalg.norm(to_flank, axis=1))
-        return np.where(inside, 0.0, nearest)[:, None]
+    @property
+    def _sizes(self) -> tuple[float, ...]:
+        return (self.radius_m, self.height_m)
 
     def _mesh(self) -> trimesh.Trimesh:
         whole = trimesh.creation.cone(self.radius_m, self.height_m, sections=20)
@@ -220,42 +181,13 @@ class HalfSpaceObstacle(Obstacle):
         flat, faces = grid_mesh(_DRAWN, _DRAWN, _VERTICES, 0.0, 0)
         return np.column_stack([flat - _DRAWN / 2, np.zeros(len(flat))]), faces
 
-    def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Solid:  # noqa: ARG002
+    def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shape:  # noqa: ARG002
         """The whole half space."""
-        up = rotation_from_rpy(*self.rpy_rad)[:, 2]
-        below = HalfSpace.through(np.array(self.position_m), up)
-
-        def distances(points: Array) -> tuple[Array, Array]:
-            distance = np.maximum(below.along(points) - below.offset_m, 0.0)
-            return distance, distance
-
-        shape = fcl.Halfspace(np.array(below.normal), below.offset_m)
-        return _Below(shape, np.inf, distances, below)
+        return self.standing(Shape("half-space"))
 
 
-class _Below(Solid):
-    """A half space for bodies of all kinds; fcl crashes when asked for triangles near one."""
-
-    def __init__(
-        self, shape: fcl.CollisionGeometry, width: float, distances: Distances, below: HalfSpace
-    ) -> None:
-        super().__init__(shape, width, distances)
-        self._below = below
-
-    def meets(self, mesh: Solid) -> bool:  # noqa: ARG002
-        """False: it cannot be known of faces, and callers ask about the vertices as well."""
-        return False
-
-    def _touches(self, body: Body, ends: Array, poses: Poses | None = None) -> Mask:
-        if body.solid is None:
-            return super()._touches(body, ends, poses)
-        lowest = lowest_points(body.solid, body_poses(body, ends, poses), self._below)
-        return np.asarray(lowest <= self._below.offset_m + body.skin)
-
-
-_FARTHEST = 1_000_000  # a cell's number may be at most so far from 0
+_FARTHEST = 30_000  # a cell's number may be at most so far from 0; an octree has 2^15
 _MOST_SIDES = 375_000  # with two triangles each; as many as a mesh of 250,000 vertices has at most
-_NEIGHBORS = 8  # nearest cells that are looked at for each point
 _SIDES = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]])
 
 
@@ -315,32 +247,10 @@ class BoxGridObstacle(Obstacle):
         faces = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
         return places * self.cell_m, faces.astype(np.int64)
 
-    def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Solid:
+    def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shape:
         """The filled cells."""
-        vertices, faces = self.shell(folder, deadline)
-        middles = (self.cells(folder, deadline) + 0.5) * self.cell_m
-        tree, half = cKDTree(middles), self.cell_m / 2
-        nearest = min(_NEIGHBORS, len(middles))
-
-        def distances(points: Array) -> tuple[Array, Array]:
-            """A cube lies between the balls about its middle through sides and corners."""
-            to_middle, _ = tree.query(points)
-            return np.maximum(to_middle - np.sqrt(3) * half, 0.0), np.maximum(to_middle - half, 0.0)
-
-        def near(points: Array, reach: float) -> tuple[Array, Array]:  # noqa: ARG001
-            """A cell that is not among the nearest has a middle at least as far as theirs."""
-            to_middle, cell = tree.query(points, k=[*range(1, nearest + 1)])
-            beyond = np.maximum(np.abs(points[:, None] - middles[cell]) - half, 0.0)
-            to_cell = np.linalg.norm(beyond, axis=2).min(axis=1)
-            if nearest == len(middles):
-                return to_cell, to_cell
-            others = np.maximum(to_middle[:, -1] - np.sqrt(3) * half, 0.0)
-            return np.minimum(to_cell, others), to_cell
-
-        extent = sorted(np.ptp(vertices, axis=0).tolist())
-        parts = one_of_each_part(vertices, faces)
-        solid = Solid(mesh_model(vertices, faces), extent[1], distances, near, parts)
-        return solid.placed(self)
+        corners = np.asarray(self.cells(folder, deadline) * self.cell_m, dtype=np.float64)
+        return self.standing(Shape("cells", (self.cell_m,), vertices=corners))
 
 
 def _outer_sides(cells: Index) -> Mask:

@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field, FiniteFloat, model_validator
 
 from cellcolor.arrays import Array
+from cellcolor.frontend.arm.shape import Shape
 from cellcolor.frontend.tables import Angles, Position, Table
 
 
@@ -28,6 +29,10 @@ class Placement(Table):
         """Points (n, 3) of the thing's own frame in the world, m."""
         turn = rotation_from_rpy(*self.rpy_rad)
         return np.asarray(points @ turn.T + np.array(self.position_m))
+
+    def standing(self, shape: Shape) -> Shape:
+        """A shape of the thing's own frame in the world."""
+        return shape.moved(rotation_from_rpy(*self.rpy_rad), np.array(self.position_m))
 
     def seen_from(self, frame: Placement) -> Self:
         """The same place in a frame that stands in the world itself."""

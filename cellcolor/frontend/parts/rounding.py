@@ -15,14 +15,12 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, Mask, numbered, unit
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.parts.surface import SHARP, Surface
 from cellcolor.frontend.sizes import check_rounding
-from cellcolor.memory import at_once
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 _ROWS = 1000  # vertices that are rounded together
-_AROUND = 640  # bytes that a face takes for each vertex that it is around
+_AROUND = 25_000  # faces around vertices that are looked at together
 _SAME = 1e-9  # of the radius; a ball that is smaller by less is no smaller
 _BENT = 1e-6  # between the normals of two faces; less is a plane
 
@@ -46,22 +44,17 @@ def rounded(surface: Surface, radius: float, deadline: Deadline = NEVER) -> Surf
     asked = np.flatnonzero((_rims(surface) < radius) & around.is_bent(radius))
     size = float(around.mesh.areas.mean())
     check_rounding(len(asked), min(np.pi * radius**2 / size, len(around.mesh.corners)))
-    normals = shared(surface.normals.shape, np.float64)
-    normals[:] = surface.normals
-
-    def work(number: int) -> None:
-        parts = [asked[number * _ROWS : (number + 1) * _ROWS]]
-        while parts:
-            deadline.check()
-            rows = parts.pop()
-            found = around.means(rows, radius)
-            if found is None:
-                parts += np.array_split(rows, 2)
-            else:
-                normals[rows] = found
-
-    share_out(work, -(-len(asked) // _ROWS))
-    return replace(surface, normals=np.array(normals), divided=None)
+    normals = surface.normals.copy()
+    parts = [asked[first : first + _ROWS] for first in range(0, len(asked), _ROWS)]
+    while parts:
+        deadline.check()
+        rows = parts.pop()
+        found = around.means(rows, radius)
+        if found is None:
+            parts += np.array_split(rows, 2)
+        else:
+            normals[rows] = found
+    return replace(surface, normals=normals, divided=None)
 
 
 def note_on_triangles(surface: Surface, radius: float) -> tuple[str, ...]:
@@ -187,7 +180,7 @@ class _Around:
             at = np.searchsorted(known, new[~there])
             known, ball = np.insert(known, at, new[~there]), np.insert(ball, at, its_ball[~there])
             which, face, its_ball = which[better], face[better], its_ball[better]
-            if len(known) > at_once(_AROUND) and len(rows) > 1:
+            if len(known) > _AROUND and len(rows) > 1:
                 return None
         which, face = np.divmod(known, count)
         return which, face, ball

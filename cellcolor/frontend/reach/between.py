@@ -16,6 +16,7 @@ from cellcolor.arrays import Array, Index, Mask, numbered
 from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.memory import batches, check_memory
 
+_POINT = 4_096  # bytes that a tested point takes at most
 _ROUNDS = 20  # each at least halves a step that is too long; what is left then is a jump
 
 Test = Callable[[Array, Array, NDArray[np.intp]], tuple[Mask, Array]]
@@ -52,15 +53,6 @@ def strides(first: Iterable[Array], second: Iterable[Array], longest: Array) -> 
     return np.sqrt(squares)
 
 
-def bytes_of_point(bodies: int) -> int:
-    """What testing one point of an edge takes at most, beside the test's own temporaries.
-
-    Args:
-        bodies: how many ends of bodies are followed.
-    """
-    return 120 * bodies + 1024
-
-
 def remains_valid(
     surface: Surface,
     edges: Index,
@@ -88,10 +80,10 @@ def remains_valid(
     i, j = edges.T
     at_i, at_j = (end[i, branches] for end in ends), (end[j, branches] for end in ends)
     pieces = np.maximum(pieces, np.ceil(strides(at_i, at_j, longest)).astype(int))
-    cut, each = np.flatnonzero(pieces > 1), bytes_of_point(len(ends))
+    cut = np.flatnonzero(pieces > 1)
     most = int(pieces.max(initial=0))
-    check_memory(most * each, f"testing {most:,} points on one mesh edge")
-    for batch in batches(pieces[cut] + 1, each):
+    check_memory(most * _POINT, f"testing {most:,} points on one mesh edge")
+    for batch in batches(pieces[cut] + 1):
         # Parts of edges: row, from where to where, what they are cut into, the bodies there.
         rows = cut[batch]
         near, far = (ends[:, vertex[rows], branches[rows]] for vertex in (i, j))
@@ -117,6 +109,6 @@ def remains_valid(
             count = np.ceil(stride[here]).astype(int)
             open_ += [
                 (rounds + 1, rows[p], low[p], high[p], count[p], near[:, p], far[:, p])
-                for p in batches(count + 1, each)
+                for p in batches(count + 1)
             ]
     return result

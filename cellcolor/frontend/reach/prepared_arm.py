@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +21,7 @@ from cellcolor.frontend.arm.inverse import (
 )
 from cellcolor.frontend.arm.kinematics import Conditioning, conditioning, task_determinants
 from cellcolor.frontend.arm.loading import load_robot
-from cellcolor.frontend.arm.robot import Robot, TaskSpace, wider
+from cellcolor.frontend.arm.robot import Robot, TaskSpace
 from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at
 from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
 from cellcolor.frontend.parts.placement import rotation_from_rpy
@@ -64,33 +63,13 @@ class PreparedArm:
         bare = self if self.nameless is None else replace(self, kinematics=self.nameless.kinematics)
         return replace(bare, nameless=None)
 
-    @cached_property
-    def near_object(self) -> Robot:
-        """The robot, wider by the distance that the setup keeps from the object."""
-        return wider(self.robot, self.setup.margins.to_object_m)
-
-    @cached_property
-    def near_obstacles(self) -> Robot:
-        """The same for obstacles."""
-        return wider(self.robot, self.setup.margins.to_obstacles_m)
-
-    @cached_property
-    def near_ground(self) -> Robot:
-        """The same for the ground."""
-        return wider(self.robot, self.setup.margins.to_ground_m)
-
-    @cached_property
-    def near_itself(self) -> Robot:
-        """The same for other links: each of two links is wider by half of their distance."""
-        return wider(self.robot, self.setup.margins.between_links_m / 2)
-
     def inverse(self, points: Array, directions: Array, deadline: Deadline = NEVER) -> Array:
         """All branches (n, branches, joints) in rad, or all solutions if they have no names.
 
         See :class:`~cellcolor.frontend.arm.inverse.InverseKinematics`.
         """
         parts = []
-        for rows in chunks(len(points), self._bytes_of_solving):
+        for rows in chunks(len(points), self.slots):
             deadline.check()
             parts.append((rows, self.kinematics.solve(points[rows], directions[rows])))
         most = max([1, *(part.shape[1] for _, part in parts)])
@@ -105,11 +84,6 @@ class PreparedArm:
         turn = self.setup.task.turn
         unnamed = _MOST_SOLUTIONS * (1 if turn is None else len(turn.degrees))
         return len(self.kinematics.branches) or unnamed
-
-    @property
-    def _bytes_of_solving(self) -> int:
-        """How many bytes the inverse kinematics of a pose takes at most."""
-        return 128 * self.robot.joints * self.slots
 
     @property
     def measure(self) -> Measure:
@@ -132,7 +106,7 @@ class PreparedArm:
     def follow(self, points: Array, directions: Array, branches: NDArray[np.intp]) -> Array:
         """One branch for each point, (n, joints) in rad, NaN where it has no solution."""
         found = np.empty((len(points), self.robot.joints))
-        for rows in chunks(len(points), self._bytes_of_solving):
+        for rows in chunks(len(points)):
             found[rows] = self.kinematics.solve(points[rows], directions[rows], branches[rows])[
                 :, 0
             ]

@@ -38,19 +38,14 @@ from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import stays_in_limits
 from cellcolor.frontend.reach.prepared_arm import PreparedArm
-from cellcolor.frontend.reach.smooth import bytes_of_following, joint_step, shorter_way
+from cellcolor.frontend.reach.smooth import joint_step, shorter_way
 from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
 from cellcolor.frontend.reach.validity import Judge
-from cellcolor.memory import at_once, chunks
+from cellcolor.memory import chunks
 from cellcolor.mesh.triangle_mesh import grouped
 
 MOST_SHEETS = 60
 """A set of branches has to fit into one integer where slivers are cleaned."""
-
-
-def edges_at_once(slots: int, joints: int) -> int:
-    """How many edges :class:`Linking` compares at a time within memory, given the slots."""
-    return at_once(slots * (slots * 8 * (4 * joints + 8) + bytes_of_following(joints)))
 
 
 def in_sheets(arm: PreparedArm, surface: Surface, judge: Judge, deadline: Deadline) -> PreparedArm:
@@ -143,7 +138,7 @@ class SheetKinematics(InverseKinematics):
         ready = self._valid[near, sheets[asked][:, None]] & ~at_vertex[:, None]
         rows = np.flatnonzero(ready.any(axis=1))
         start, to = near[rows, np.argmax(ready[rows], axis=1)], asked[rows]
-        for part in chunks(len(rows), bytes_of_following(self._joints.shape[2])):
+        for part in chunks(len(rows)):
             at, target = start[part], to[part]
             way = Surface(
                 np.concatenate([self._points[at], points[target]]),
@@ -189,10 +184,9 @@ class Linking:
     def all_links(self, deadline: Deadline) -> Index:
         """Linked pairs (l, 3) of all mesh edges, these in batches that fit into memory."""
         edges, found = self.surface.edges(), [np.empty((0, 3), dtype=np.int64)]
-        together = edges_at_once(self.nodes.shape[1], self.solutions.joints.shape[2])
-        for first in range(0, len(edges), together):
+        for part in chunks(len(edges), self.nodes.shape[1]):
             deadline.check()
-            found.append(self.links(edges[first : first + together]) + np.array([first, 0, 0]))
+            found.append(self.links(edges[part]) + np.array([part.start, 0, 0]))
         return np.concatenate(found)
 
     def links(self, edges: Index) -> Index:

@@ -131,11 +131,6 @@ def joint_step(first: Array, second: Array) -> Array:
     return np.asarray(np.abs(shorter_way(first, second)).max(axis=-1))
 
 
-def bytes_of_following(joints: int) -> int:
-    """What following one motion takes at most, as long as it is not halved again and again."""
-    return 256 * (joints + 1)
-
-
 def follow_edges(
     surface: Surface,
     edges: Index,
@@ -158,7 +153,6 @@ def follow_edges(
     lengths, turns = surface.lengths(edges), surface.turns(edges)
     smooth = np.ones(len(edges), dtype=bool)
     settled: list[_Steps] = []
-    probing = bytes_of_following(configurations[0].shape[1])
 
     def sort(steps: _Steps) -> list[_Steps]:
         """Keep what is settled, note jumps; what is open comes back in pieces."""
@@ -170,7 +164,7 @@ def follow_edges(
         settled.append(steps.take(done))
         smooth[row[~done & (change <= measure.shortest)]] = False
         rest = steps.take(~done)
-        return [rest.take(part) for part in chunks(len(rest), probing)]
+        return [rest.take(part) for part in chunks(len(rest))]
 
     at_ends = np.zeros(len(edges)), np.ones(len(edges))
     open_ = sort(_Steps(np.arange(len(edges)), *at_ends, *configurations, *determinants))

@@ -14,7 +14,6 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.frontend.arm.kinematics import (
     Conditioning,
-    bytes_of_poses,
     forward,
     manipulability,
     signed_task_determinant,
@@ -85,7 +84,7 @@ class Tracker:
         whole = Solutions(
             joints, np.full(shape, np.nan), np.full(shape, np.inf), np.zeros(shape, dtype=bool)
         )
-        for rows in chunks(len(joints), joints.shape[1] * bytes_of_poses(self._robot.joints)):
+        for rows in chunks(len(joints), joints.shape[1]):
             self._describe(whole.take(rows))
         return whole
 

@@ -13,10 +13,8 @@ from cellcolor.arrays import Array, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.kinematics import bytes_of_poses
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.collision import tracked_points, tracked_steps
-from cellcolor.frontend.forked import share_out, shared
+from cellcolor.frontend.contact.movement import tracked_points, tracked_steps
 from cellcolor.frontend.reach.validity_tests import (
     STANDARD_TESTS,
     Postures,
@@ -28,7 +26,6 @@ from cellcolor.memory import check_memory, chunks
 NO_SOLUTION = 1
 """The code where a branch does not reach the pose, so that there is nothing to test."""
 _NAMES = ("valid", "no solution")  # of the codes that no test stands for
-_PAYS = 8  # with this many parts, other processes are worth their start
 
 
 @dataclass(frozen=True)
@@ -64,9 +61,8 @@ class Verdicts:
         reasons: (k,) uint8 codes, which index :attr:`Judge.reason_names`.
         determinants: (k,) task determinant in m^3, NaN without solution.
         tracked: (points, k, 3) of the bodies that can move, in the world, m, see
-            :func:`~cellcolor.frontend.contact.collision.tracked_points`; NaN as above.
-        seconds: of forward kinematics and of each test, those of several processes at a time
-            counted once.
+            :func:`~cellcolor.frontend.contact.movement.tracked_points`; NaN as above.
+        seconds: of forward kinematics and of each test.
     """
 
     configurations: Array
@@ -148,35 +144,26 @@ class Judge:
         """
         count = len(configurations)
         points, joints = len(self.tracked_steps), configurations.shape[1]
-        parts = list(chunks(count, bytes_of_poses(joints) + 160 * points))
         # Of millions the ends of all bodies are a gigabyte: there is to be no second copy.
         # A solid has four times the points of a capsule, which single precision makes up for: a
         # tenth of a micrometer does not matter to how far bodies move.
         place = np.float32 if self._workplace.robot.has_solids else np.float64
-        check_memory(
-            count * self.bytes_kept(joints), f"judging {count:,} configurations of the arm"
-        )
-        new = np.zeros if len(parts) < 2 * _PAYS else shared
+        kept = 8 * joints + 9 + 24 * points
+        check_memory(count * kept, f"judging {count:,} configurations of the arm")
         whole = Verdicts(
-            new(configurations.shape, np.float64),
-            new((count,), np.uint8),
-            new((count,), np.float64),
-            new((points, count, 3), place),
-            {},
+            np.zeros(configurations.shape),
+            np.zeros(count, np.uint8),
+            np.zeros(count),
+            np.zeros((points, count, 3), place),
+            dict.fromkeys(("forward kinematics", *(test.name for test in self._tests)), 0.0),
         )
-        timed = ("forward kinematics", *(test.name for test in self._tests))
-        seconds = new((len(parts), len(timed)), np.float64)
-
-        def judge(number: int) -> None:
+        for rows in chunks(count):
             deadline.check()
-            rows = parts[number]
             part = self._judged(configurations[rows])
             whole.configurations[rows], whole.reasons[rows] = part.configurations, part.reasons
             whole.determinants[rows], whole.tracked[:, rows] = part.determinants, part.tracked
-            seconds[number] = [part.seconds[name] for name in timed]
-
-        processes = share_out(judge, len(parts), at_least=_PAYS)
-        whole.seconds.update(zip(timed, (seconds.sum(axis=0) / processes).tolist(), strict=True))
+            for name, seconds in part.seconds.items():
+                whole.seconds[name] += seconds
         return whole
 
     def only(self, names: frozenset[str]) -> Judge:
@@ -195,10 +182,6 @@ class Judge:
             before = failed.get(test.name, np.zeros(len(configurations), dtype=bool))
             failed[test.name] = before | test.failed(postures)
         return failed
-
-    def bytes_kept(self, joints: int) -> int:
-        """What the verdict on one configuration takes."""
-        return 8 * joints + 9 + 24 * len(self.tracked_steps)
 
     def _judged(self, configurations: Array) -> Verdicts:
         count = len(configurations)

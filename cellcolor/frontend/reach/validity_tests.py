@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -23,8 +24,9 @@ from cellcolor.frontend.arm.kinematics import (
     tip_jacobian,
 )
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.collision import HalfSpace, body_ends, hits_ground, hits_itself
-from cellcolor.frontend.contact.solids import Solid
+from cellcolor.frontend.arm.shape import Shape
+from cellcolor.frontend.contact.engine import Contacts, pairs_of, pairs_with
+from cellcolor.frontend.contact.movement import HalfSpace, body_ends
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.reach.prepared_arm import PreparedArm
 from cellcolor.frontend.setup import Setup
@@ -38,15 +40,15 @@ class Workplace:
     Attributes:
         arm: and what it has to do.
         ground: None without one.
-        obstacles: see :class:`~cellcolor.frontend.contact.solids.Solid`.
+        obstacles: see :class:`~cellcolor.frontend.arm.shape.Shape`.
         target: the object, as what must not be hit.
         tip: the region where the tool works.
     """
 
     arm: PreparedArm
     ground: HalfSpace | None
-    obstacles: tuple[Solid, ...]
-    target: Solid
+    obstacles: tuple[Shape, ...]
+    target: Shape
     tip: Tip
 
     @property
@@ -58,6 +60,33 @@ class Workplace:
     def setup(self) -> Setup:
         """What the arm has to do."""
         return self.arm.setup
+
+    @cached_property
+    def with_ground(self) -> Contacts:
+        """Contacts of bodies with the ground, but of links that may touch it."""
+        if self.ground is None:
+            return Contacts([], self.robot)
+        ground, exempt = self.ground.shape, self.setup.robot.may_touch_ground
+        margin = self.setup.margins.to_ground_m
+        free = (body for body in self.robot.bodies if body.link not in exempt)
+        return Contacts([(body, ground, margin) for body in free], self.robot)
+
+    @cached_property
+    def with_itself(self) -> Contacts:
+        """Contacts of links with each other."""
+        return Contacts(pairs_of(self.robot, self.setup.margins.between_links_m), self.robot)
+
+    @cached_property
+    def with_obstacles(self) -> Contacts:
+        """Contacts with all obstacles."""
+        margin = self.setup.margins.to_obstacles_m
+        return Contacts(pairs_with(self.robot, self.obstacles, margin), self.robot)
+
+    @cached_property
+    def with_object(self) -> Contacts:
+        """Contacts with the object."""
+        margin = self.setup.margins.to_object_m
+        return Contacts(pairs_with(self.robot, [self.target], margin), self.robot)
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,10 +145,6 @@ class Postures:
     def tool_axis(self) -> Array:
         """(k, 3) unit vectors from the flange to the tip, in the world."""
         return self.poses.tool_axis
-
-    def ends_of(self, robot: Robot) -> Array:
-        """The ends of the axes of all bodies of the same robot, or of a wider one."""
-        return self.ends if robot is self.workplace.robot else body_ends(robot, self.poses)
 
 
 class ValidityTest(Table):
@@ -242,12 +267,7 @@ class GroundContact(StandardTest):
 
     def failed(self, postures: Postures) -> Mask:
         """Those in which a link is in the ground, if there is one."""
-        place = postures.workplace
-        if place.ground is None:
-            return np.zeros(len(postures), dtype=bool)
-        exempt = place.setup.robot.may_touch_ground
-        robot = place.arm.near_ground
-        return hits_ground(robot, postures.ends_of(robot), place.ground, exempt, postures.poses)
+        return postures.workplace.with_ground(postures.configurations)
 
 
 class SelfCollision(StandardTest):
@@ -259,8 +279,7 @@ class SelfCollision(StandardTest):
 
     def failed(self, postures: Postures) -> Mask:
         """Those in which two links overlap."""
-        robot = postures.workplace.arm.near_itself
-        return hits_itself(robot, postures.ends_of(robot), postures.poses)
+        return postures.workplace.with_itself(postures.configurations)
 
 
 class ObstacleCollision(StandardTest):
@@ -272,12 +291,7 @@ class ObstacleCollision(StandardTest):
 
     def failed(self, postures: Postures) -> Mask:
         """Those in which an obstacle is hit."""
-        robot, hit = postures.workplace.arm.near_obstacles, np.zeros(len(postures), dtype=bool)
-        ends = postures.ends_of(robot)
-        for obstacle in postures.workplace.obstacles:
-            left = postures.without(hit)
-            hit[~hit] = obstacle.hits(robot, ends[:, :, ~hit], left.poses)
-        return hit
+        return postures.workplace.with_obstacles(postures.configurations)
 
 
 class ObjectCollision(StandardTest):
@@ -289,8 +303,7 @@ class ObjectCollision(StandardTest):
 
     def failed(self, postures: Postures) -> Mask:
         """Those in which the object is hit."""
-        robot = postures.workplace.arm.near_object
-        return postures.workplace.target.hits(robot, postures.ends_of(robot), postures.poses)
+        return postures.workplace.with_object(postures.configurations)
 
 
 STANDARD_TESTS: tuple[StandardTest, ...] = (

@@ -1,5 +1,5 @@
 """``report.html``: one page on a planned motion, complete in itself.
 
-Texts and tables are written here (:mod:`.cards`); what moves is drawn by scripts of our own that
-are put into the page (``*.js``), from arrays that :mod:`.viewer_data` prepares.
+Texts and tables are written here (:mod:`.cards`); what is drawn comes from :mod:`.surface_modes`
+and :mod:`.motion_data`, and :mod:`cellcolor.pictures.viewer` draws it.
 """

@@ -127,7 +127,7 @@ def _feed(report: MotionReport) -> Card | None:
             f"{feed.mean_m_per_s:.3g}",
             f"{feed.lowest_m_per_s:.3g}",
             f"{feed.slow_share:.0%}",
-            f"{feed.limited_by} of {feed.joint}" if feed.slow_share and feed.joint else "–",
+            f"{feed.limited_by} of {feed.joint}" if feed.why and feed.joint else "–",
         )
         for number, feed in enumerate(verdict.feeds)
     ]

@@ -30,7 +30,6 @@ class Card:
         good: whether this is as it should be, None where that is not asked.
         modes: for each row after the head the way to fill the part that it shows, by name.
         times: for each row after the head the moment that it leads to, s, None for none.
-        curve: points to be drawn above the table, x and y of each; they show what the rows do.
     """
 
     title: str
@@ -39,7 +38,6 @@ class Card:
     good: bool | None = None
     modes: tuple[str, ...] = ()
     times: tuple[float | None, ...] = ()
-    curve: tuple[tuple[float, float], ...] = ()
 
 
 Answers = Front | Explanation | Placements | SetUpPlan

@@ -1,42 +1,28 @@
-"""The page, put together: texts, styles, scripts and data in one file that loads nothing."""
+"""``report.html``: what is said of a planned motion, around the viewer."""
 
 from __future__ import annotations
 
 import html
-import json
-import math
-from collections.abc import Mapping, Sequence
-from importlib.resources import files
 
-from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
-from cellcolor.files.writing import MARKER
 from cellcolor.pictures.report_page.cards import badges_of, cards_of
 from cellcolor.pictures.report_page.content import Card, MotionReport
-from cellcolor.pictures.report_page.viewer_data import MOST_FRAMES, viewer_data
-from cellcolor.version import __version__
+from cellcolor.pictures.report_page.motion_data import report_data
+from cellcolor.pictures.viewer.page import render_page
 
 _SHORT = 14  # characters
-_SCRIPTS = ("viewer.js", "camera.js", "space.js", "charts.js", "player.js")
 
 
-def render_page(report: MotionReport) -> bytes:
+def render_report(report: MotionReport) -> bytes:
     """``report.html``; the same report gives the same bytes."""
-    return _filled(
-        {
-            "MARKER": MARKER,
-            "TITLE": html.escape(_title(report)),
-            "PROOF": html.escape(_proof(report)),
-            "BADGES": "".join(map(_badge, badges_of(report))),
-            "STILL": "" if report.trajectory is not None else ' class="still"',
-            "CHART_NOTE": html.escape(_chart_note(report.trajectory)),
-            "CARDS": "\n".join(map(_card, cards_of(report))),
-            "FOOTER": html.escape(f"Made by cellcolor {__version__}; this file loads nothing."),
-            "STYLE": _own_text("page.css"),
-            "DATA": _data(report),
-            "SCRIPT": "\n".join(map(_own_text, _SCRIPTS)),
-        }
-    ).encode()
+    badges = "".join(map(_badge, badges_of(report)))
+    proof = html.escape(_proof(report))
+    return render_page(
+        _title(report),
+        report_data(report),
+        header=f'<p class="proof">{proof}</p>\n<ul class="badges">{badges}</ul>',
+        cards="\n".join(map(_card, cards_of(report))),
+    )
 
 
 def _title(report: MotionReport) -> str:
@@ -53,37 +39,6 @@ def _proof(report: MotionReport) -> str:
     if report.solution is None:
         return report.missing
     return _sentence(report.solution.in_words(report.decomposition.instance))
-
-
-def _chart_note(trajectory: Trajectory | None) -> str:
-    samples = 0 if trajectory is None else len(trajectory.times)
-    note = (
-        "Red, dashed: limits. Orange: moves between strokes. Click to go to that moment. "
-        "Measures of conditioning show their smallest value up to the next frame; their limits "
-        "apply in contact."
-    )
-    if samples > MOST_FRAMES:
-        note += f" About {MOST_FRAMES} of {samples} samples are shown."
-    return note
-
-
-def _data(report: MotionReport) -> str:
-    data = json.dumps(viewer_data(report), allow_nan=False, separators=(",", ":"))
-    return data.replace("<", "\\u003c")  # nothing in it ends the script
-
-
-def _filled(parts: Mapping[str, str]) -> str:
-    """The template with its places filled; what is filled in is not looked at again."""
-    first, *pieces = _own_text("page.html").split("{{")
-    text = [first]
-    for piece in pieces:
-        name, _, rest = piece.partition("}}")
-        text += [parts[name], rest]
-    return "".join(text)
-
-
-def _own_text(name: str) -> str:
-    return (files(__package__) / name).read_text(encoding="utf-8")
 
 
 def _sentence(text: str) -> str:
@@ -103,8 +58,6 @@ def _verdict_class(good: bool | None, first: str = "") -> str:
 def _card(card: Card) -> str:
     parts = [f"<h2>{html.escape(card.title)}</h2>"]
     parts += [f"<p>{html.escape(text)}</p>" for text in card.paragraphs]
-    if card.curve:
-        parts.append(_plot(card.curve, card.modes))
     if card.rows:
         head, *rows = card.rows
         lines = []
@@ -130,33 +83,3 @@ def _shows(mode: str, time: float | None = None) -> str:
     if time is not None:
         return f' data-time="{time}" class="link" tabindex="0"'
     return f' data-mode="{html.escape(mode)}" tabindex="0"' if mode else ""
-
-
-def _plot(points: Sequence[tuple[float, float]], modes: Sequence[str]) -> str:
-    """Points that are joined by lines, as an SVG drawing; y is in percent."""
-    wide, high, left, low = 360, 166, 40, 122
-    least = 10 * math.floor(min(y for _, y in points) / 10)
-    most_x = max(1.0, *(x for x, _ in points)) if len(points) > 1 else 1.0
-    across, up = (wide - left - 20) / most_x, (low - 12) / (100 - min(least, 90))
-    at = [(left + 8 + across * x, low - up * (y - min(least, 90))) for x, y in points]
-    marks = [
-        f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5"{_shows(mode)}><title>{html.escape(mode)}</title>'
-        "</circle>"
-        for (x, y), mode in zip(at, modes, strict=True)
-    ]
-    line = " ".join(f"{x:.1f},{y:.1f}" for x, y in at)
-    ticks = [
-        f'<text x="{x:.1f}" y="{low + 17}" text-anchor="middle">{count:g}</text>'
-        for (x, _), (count, _) in zip(at, points, strict=True)
-    ]
-    ticks += [
-        f'<text x="{left - 4}" y="{low - up * (value - min(least, 90)) + 4:.1f}" '
-        f'text-anchor="end">{value:g} %</text>'
-        for value in (min(least, 90), 100)
-    ]
-    return (
-        f'<svg class="plot" viewBox="0 0 {wide} {high}" role="img" aria-label="Share covered by '
-        f'number of lift-offs"><path d="M{left} 8V{low}H{wide - 8}"/>'
-        f'<polyline points="{line}"/>{"".join(marks)}{"".join(ticks)}'
-        f'<text x="{wide - 8}" y="{high - 8}" text-anchor="end">lift-offs</text></svg>'
-    )

@@ -27,7 +27,7 @@ class Apart(Certificate):
     lonely: tuple[int, ...]
 
     def shown(self, value: int, instance: Instance) -> Shown:
-        marks = (Mark("x", f"{value} of {len(instance.cells)} cells", self.lonely, 0),)
+        marks = (Mark("x", f"{value} of {len(instance.cells)} cells", self.lonely, ()),)
         return Shown(marks, (), ("Each has colors of its own.",))
 
 
@@ -93,7 +93,7 @@ def test_a_new_kind_is_drawn() -> None:
     picture = cellcolor.show(SURFACE, view="why", solution=solved(0, 1)).picture
     assert isinstance(picture, Picture3D)
     assert picture.notes == ("Each has colors of its own.",)
-    assert [layer.name for layer in picture.layers] == ["2 of 2 cells"]
+    assert [name for name, _ in picture.legend] == ["2 of 2 cells"]
 
 
 def test_a_new_kind_is_on_the_page(toy: BoundKind) -> None:

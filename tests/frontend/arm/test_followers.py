@@ -18,7 +18,8 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.urdf import parse_urdf
-from cellcolor.frontend.contact.collision import body_ends, hits_itself
+from cellcolor.frontend.contact.engine import Contacts, pairs_of
+from cellcolor.frontend.contact.movement import body_ends
 from examples import examples
 
 ARM, TOOL = ROBOTS / "ur5.urdf", ROBOTS / "polishing_tool.urdf"
@@ -124,11 +125,9 @@ def test_a_follower_hits_what_it_meets_only_where_it_has_moved() -> None:
     robot = load(ball)
     tried = np.array([q, q + np.eye(6)[5]])
     for own, expected in ((plain, [False, False]), (robot, [False, True])):
-        poses = forward(own, tried)
-        assert hits_itself(own, body_ends(own, poses), poses).tolist() == expected
+        assert Contacts(pairs_of(own), own)(tried).tolist() == expected
     still = replace(robot, followers=(replace(robot.followers[0], multiplier=0.0),))
-    poses = forward(still, tried)
-    assert not hits_itself(still, body_ends(still, poses)).any()
+    assert not Contacts(pairs_of(still), still)(tried).any()
     some = forward(robot, tried).take(np.array([1]))
     assert (
         body_ends(robot, some)[:, :, 0] == body_ends(robot, forward(robot, tried))[:, :, 1]

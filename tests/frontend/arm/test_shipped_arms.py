@@ -14,7 +14,7 @@ from shipped import ROBOTS
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.collision import body_ends, hits_itself
+from cellcolor.frontend.contact.engine import Contacts, pairs_of
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.setup import Setup
 
@@ -117,7 +117,7 @@ def test_at_home_nothing_is_hit_and_the_tool_looks_down(name: str) -> None:
     home = np.array([setup.motion.home_rad])
     assert ((arm.lower <= home) & (home <= arm.upper)).all()
     poses = forward(arm, home)
-    assert not hits_itself(arm, body_ends(arm, poses), poses).any()
+    assert not Contacts(pairs_of(arm), arm)(home).any()
     assert np.allclose(poses.tool_axis, [0, 0, -1], atol=0.01)
     assert np.hypot(*poses.tip[0, :2]) > 0.2  # away from the base
     assert arm.warnings == ()

@@ -1,30 +1,26 @@
-"""Collision verdicts against coal, distances against brute force."""
+"""Contacts of many configurations against distances between the shapes of the URDF, one by one."""
 
 from __future__ import annotations
 
+import os
+import signal
 from collections.abc import Callable
 
 import coal
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from reasons import Reason
 from scipy.spatial.transform import Rotation
 from world import PAIRS, World
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Mask
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.collision import (
-    HalfSpace,
-    body_ends,
-    hits_ground,
-    hits_itself,
-    segment_distance,
-)
+from cellcolor.frontend.arm.shape import Shape
+from cellcolor.frontend.contact.engine import Contacts, pairs_of, pairs_with
+from cellcolor.frontend.contact.movement import HalfSpace
 from cellcolor.frontend.contact.obstacle import (
     BoxObstacle,
     CapsuleObstacle,
@@ -34,7 +30,6 @@ from cellcolor.frontend.contact.obstacle import (
     Obstacle,
     SphereObstacle,
 )
-from cellcolor.frontend.contact.solids import mesh_solid
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
 from cellcolor.frontend.parts.surface import Surface
@@ -42,7 +37,6 @@ from cellcolor.frontend.scene import Scene
 
 CONTACT = 0.0005  # m; verdicts may differ nearer to contact than this
 EXEMPT = ("base_link", "shoulder_link")
-corner = st.lists(st.sampled_from([-2, -1, 0, 1, 2]), min_size=3, max_size=3)
 
 
 @pytest.fixture(scope="module")
@@ -56,8 +50,19 @@ def joints() -> Array:
     return np.random.default_rng(21).uniform(-np.pi, np.pi, (600, 6))
 
 
-def placed(robot: Robot, joints: Array) -> Array:
-    return body_ends(robot, forward(robot, joints))
+def hits(robot: Robot, thing: Shape, joints: Array) -> Mask:
+    return Contacts(pairs_with(robot, [thing]), robot)(joints)
+
+
+def hits_ground(robot: Robot, ground: HalfSpace, exempt: tuple[str, ...], joints: Array) -> Mask:
+    thing = ground.shape
+    pairs = [(body, thing, 0.0) for body in robot.bodies if body.link not in exempt]
+    return Contacts(pairs, robot)(joints)
+
+
+def mesh(surface: Surface, vertices: Array | None = None) -> Shape:
+    own = surface.vertices if vertices is None else vertices
+    return Shape("mesh", vertices=own, faces=surface.faces)
 
 
 def agree(verdicts: Array, distances: Array) -> None:
@@ -73,7 +78,7 @@ def test_self_collision_agrees_with_coal(robot: Robot, wok: Surface, joints: Arr
     for q in joints:
         world.place(q)
         distances.append(world.to_itself(PAIRS))
-    agree(hits_itself(robot, placed(robot, joints)), np.array(distances))
+    agree(Contacts(pairs_of(robot), robot)(joints), np.array(distances))
 
 
 @pytest.mark.parametrize(
@@ -88,12 +93,12 @@ def test_ground_agrees_with_coal(
         world.place(q)
         distances.append(world.to_ground(height, EXEMPT, normal))
     ground = HalfSpace.through(np.array([0.0, 0.0, height]), np.array(normal))
-    agree(hits_ground(robot, placed(robot, joints), ground, EXEMPT), np.array(distances))
+    agree(hits_ground(robot, ground, EXEMPT, joints), np.array(distances))
 
 
 def test_object_agrees_with_coal(robot: Robot, wok: Surface, joints: Array) -> None:
     world = World(robot, wok.vertices, wok.faces)
-    found = mesh_solid(wok.vertices, wok.faces).hits(robot, placed(robot, joints))
+    found = hits(robot, mesh(wok), joints)
     assert 0.05 < found.mean() < 0.95
     near = 0
     for q, verdict in zip(joints, found, strict=True):
@@ -127,11 +132,23 @@ def test_obstacles_agree_with_coal(
     turn = Rotation.from_euler("xyz", obstacle.rpy_rad).as_matrix()
     pose = coal.Transform3s(turn, np.array(obstacle.position_m))
     distances = []
-    for q in joints[:600]:
+    for q in joints:
         world.place(q)
         distances.append(world.to_solid(shape, pose))
-    found = obstacle.solid().hits(robot, placed(robot, joints[:600]))
+    found = hits(robot, obstacle.solid(), joints)
     agree(found, np.array(distances))
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+def test_a_forked_process_finds_the_same(robot: Robot, joints: Array) -> None:
+    """OpenMP's threads are not there in the child, which must not wait for them."""
+    contacts = Contacts(pairs_of(robot), robot)
+    own = contacts(joints)
+    child = os.fork()
+    if not child:
+        signal.alarm(60)
+        os._exit(int((contacts(joints) != own).any()))
+    assert os.waitpid(child, 0)[1] == 0
 
 
 def test_an_obstacle_takes_away_what_it_hits(scene: Callable[..., Scene]) -> None:
@@ -142,19 +159,6 @@ def test_an_obstacle_takes_away_what_it_hits(scene: Callable[..., Scene]) -> Non
     changed = free.reasons != blocked.reasons
     assert (blocked.reasons[changed] == Reason.OBSTACLE_COLLISION).all()
     assert changed.sum() == blocked.report.candidates["obstacle collision"] > 100
-
-
-@given(st.tuples(corner, corner, corner, corner))
-def test_segment_distance_by_brute_force(ends: tuple[list[int], ...]) -> None:
-    p0, p1, q0, q1 = (np.array([end], dtype=float) for end in ends)
-    grid = np.linspace(0, 1, 121)
-    on_p = p0 + grid[:, None] * (p1 - p0)
-    on_q = q0 + grid[:, None] * (q1 - q0)
-    nearest = np.linalg.norm(on_p[:, None] - on_q[None], axis=2).min()
-    found = segment_distance(p0, p1, q0, q1)[0]
-    # The grid is never nearer than the truth, and at most half a step per segment farther.
-    slack = (np.linalg.norm(p1 - p0) + np.linalg.norm(q1 - q0)) / 240
-    assert nearest - slack - 1e-9 <= found <= nearest + 1e-9
 
 
 def tool_down(turn: float) -> Array:
@@ -169,7 +173,7 @@ def test_tool_body_is_flat_and_ends_above_the_tip(robot: Robot) -> None:
     tip, arm = poses.tip[0, 2], (*EXEMPT, "upper_arm_link")
     for above, hit in ((0.0099, False), (0.0101, True)):
         ground = HalfSpace((0.0, 0.0, 1.0), tip + above)
-        assert hits_ground(robot, body_ends(robot, poses), ground, arm)[0] == hit
+        assert hits_ground(robot, ground, arm, tool_down(0.0))[0] == hit
 
 
 def test_only_the_tip_touches(robot: Robot) -> None:
@@ -178,7 +182,7 @@ def test_only_the_tip_touches(robot: Robot) -> None:
     plate = spherical_cap(5.0, 0.01, *disc_mesh(300, 0.0, 0))
     for height, expected in ((0.009, False), (0.011, True)):
         vertices = plate.vertices - [0, 0, 5.0] + poses.tip[0] + [0, 0, height]
-        assert mesh_solid(vertices, plate.faces).hits(robot, body_ends(robot, poses))[0] == expected
+        assert hits(robot, mesh(plate, vertices), tool_down(-0.3))[0] == expected
 
 
 def test_object_in_the_base_is_refused(scene: Callable[..., Scene]) -> None:

@@ -161,7 +161,7 @@ def test_many_faces_around_a_vertex(monkeypatch: pytest.MonkeyPatch) -> None:
     """Fewer vertices are then rounded together, to the same normals; too many are refused."""
     part = surface_of(trimesh.creation.box((1, 1, 1)).subdivide().subdivide())
     usual = rounded(part, 0.6).normals
-    monkeypatch.setattr("cellcolor.memory.MEMORY", 20 * rounding._AROUND)
+    monkeypatch.setattr(rounding, "_AROUND", 20)
     assert rounded(part, 0.6).normals == pytest.approx(usual)
     with pytest.raises(OutOfTime):
         rounded(part, 0.6, Deadline.after(0.0))

@@ -12,14 +12,13 @@ from shipped import SCENES, WOK
 
 from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, build_surface
-from cellcolor.frontend.contact.collision import longest_steps
+from cellcolor.frontend.contact.movement import longest_steps
 from cellcolor.frontend.contact.obstacle import CylinderObstacle
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.reach.between import (
     at_domain_border,
-    bytes_of_point,
     remains_valid,
     strides,
 )
@@ -74,8 +73,9 @@ def test_many_points_are_asked_in_batches(monkeypatch: pytest.MonkeyPatch) -> No
         return points[:, 1] > 0
 
     whole = checked(surface, test, 40)
-    monkeypatch.setattr("cellcolor.memory.MEMORY", 100 * bytes_of_point(1))
-    total = asked.pop()
+    monkeypatch.setattr("cellcolor.memory.CHUNK", 100)
+    total = sum(asked)
+    asked.clear()
     batched = checked(surface, test, 40)
     assert (batched == whole).all()
     # A batch ends with a whole edge of 39 points.

@@ -28,7 +28,7 @@ from cellcolor.frontend.reach.continuity import (
     node_links,
     stays_in_limits,
 )
-from cellcolor.frontend.reach.smooth import Measure, bytes_of_following, joint_step
+from cellcolor.frontend.reach.smooth import Measure, joint_step
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.setup import Continuity
 
@@ -121,7 +121,7 @@ def test_many_probes_are_taken_in_batches(monkeypatch: pytest.MonkeyPatch) -> No
         largest = max(largest, len(points))
         return plane.probe(points, directions, branch)
 
-    monkeypatch.setattr("cellcolor.memory.MEMORY", 50 * bytes_of_following(1))
+    monkeypatch.setattr("cellcolor.memory.CHUNK", 50)
     batched = link(plane.surface, plane.edges, plane.candidates, measure(), None, probe)
     assert (batched == whole).all() and 0 < largest <= 50
 

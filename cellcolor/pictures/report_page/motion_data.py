@@ -1,0 +1,235 @@
+"""What the page's scripts draw of a planned motion, thinned to what can be seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index
+from cellcolor.data.candidate_table import VALID
+from cellcolor.data.tool_paths import ToolPaths
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import Fault
+from cellcolor.frontend.arm.kinematics import (
+    forward,
+    manipulability,
+    task_determinant,
+    tip_jacobian,
+)
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.pictures.arm import (
+    BESIDE,
+    arm_points,
+    body_mesh,
+    draw_arm,
+    grid,
+    link_fills,
+    surroundings,
+)
+from cellcolor.pictures.mesh_picture import eye
+from cellcolor.pictures.picture import Layer, SpaceLines, Text
+from cellcolor.pictures.report_page.content import MotionReport
+from cellcolor.pictures.report_page.surface_modes import modes_of
+from cellcolor.pictures.viewer.data import layer_data, lines_data, packed, picture_data, text_data
+
+_MOST_FRAMES = 4000
+_MOST_MARKS, _MOST_DOTS = 40, 12  # of faults, and of left-out places
+_STOPS = 20  # at which the part beside the tool is to be seen
+_CONTACT = "#00508F"
+
+
+def report_data(report: MotionReport) -> dict[str, Any]:
+    """The part in its modes, the arm and what is around it, and the motion if there is one."""
+    modes, buttons = modes_of(report)
+    mesh = modes[0].mesh
+    assert mesh is not None
+    surface, prepared = TriangleMesh(mesh.points, mesh.faces), report.built.prepared
+    layers, lines = surroundings(prepared), []
+    ground = prepared.workplace.ground
+    if ground is not None:
+        around = np.concatenate([surface.points, *(layer.points for layer in layers)])
+        lines.append(grid(ground, around))
+    lift = 0.05 * float(surface.lengths.mean())  # m above the surface, to be visible
+    if report.trajectory is None:
+        lines += [] if report.paths is None else [_paths(report.paths, lift)]
+        layers += _still(report)
+    data = picture_data(modes, buttons) | {
+        "lines": list(map(lines_data, lines)),
+        "layers": list(map(layer_data, layers)),
+        "towards": eye(report.built.surface, BESIDE, _stops(report)).tolist(),
+    }
+    if report.trajectory is not None:
+        faults = () if report.verdict is None else report.verdict.faults
+        data["layers"] += _bodies(prepared.robot)
+        data["marks"] = _marks(report.trajectory, faults, surface)
+        data["motion"] = _motion(prepared, report.trajectory, faults, lift)
+    return data
+
+
+def _stops(report: MotionReport) -> list[tuple[Array, Array, Array]]:
+    """The tip's place and normal at some moments in contact, and the arm's points there."""
+    moved, robot = report.trajectory, report.built.robot
+    if moved is None or not moved.contact.any():
+        return []
+    touching = np.flatnonzero(moved.contact)
+    some = touching[np.linspace(0, len(touching) - 1, _STOPS).astype(np.int64)]
+    return [(moved.points[k], moved.normals[k], arm_points(robot, moved.joints[k])) for k in some]
+
+
+def _still(report: MotionReport) -> list[Layer]:
+    """The arm in a valid configuration on the part."""
+    vertex, branch = np.argwhere(report.built.reasons == VALID)[0].tolist()
+    links = {body.link for body in report.built.robot.bodies}
+    drawn = draw_arm(report.built, vertex, branch).layers
+    return [replace(layer, name="arm") for layer in drawn if layer.name in links]
+
+
+def _bodies(robot: Robot) -> list[dict[str, Any]]:
+    """The collision shapes, since these are what is tested, in the frames of their joints."""
+    fills = link_fills(robot)
+    return [
+        layer_data(Layer("arm", fills[body.link], *body_mesh(body)), body.joint)
+        for body in robot.bodies
+    ]
+
+
+def _paths(paths: ToolPaths, lift: float) -> SpaceLines:
+    """Tool paths without a motion."""
+    places = [path.points + lift * path.normals for path in paths.paths]
+    ends = [np.stack([each[:-1], each[1:]], axis=1) for each in places]
+    return SpaceLines("tool paths", _CONTACT, np.concatenate([np.empty((0, 2, 3)), *ends]))
+
+
+def _motion(
+    prepared: PreparedScene, trajectory: Trajectory, faults: Sequence[Fault], lift: float
+) -> dict[str, Any]:
+    """The frames of a trajectory, the arm's kinematics, and what its joints are held to."""
+    robot, frames = prepared.robot, frames_of(trajectory, _MOST_FRAMES)
+    poses = forward(robot, trajectory.joints)
+    linear, angular = tip_jacobian(poses)
+    contact = trajectory.contact[frames]
+    states = (contact & np.append(contact[1:], contact[-1])).astype(np.uint8)
+    states[np.isin(frames, trajectory.unplanned)] = 2
+    measures = {
+        "determinant": task_determinant(linear, angular, poses.tool_axis, robot.task),
+        "manipulability": manipulability(linear, robot.task),
+    }
+    places = trajectory.points + lift * trajectory.normals
+    return {
+        "arm": _kinematics(robot),
+        "names": list(trajectory.joint_names),
+        "limits": _limits(prepared),
+        "times": packed(trajectory.times[frames], "f4"),
+        "joints": packed(trajectory.joints[frames], "f4"),
+        # From each frame to the next: 0 between strokes, 1 in contact, 2 not planned.
+        "states": packed(states, "u1"),
+        "segment": packed(trajectory.segment[frames], "i2"),
+        "trace": packed(places[frames], "f4"),
+        "faults": [
+            {"time": fault.time, "text": fault.kind} for fault in faults if fault.time is not None
+        ],
+    } | {
+        # The least value from each frame to just before the next, so that no dip is lost.
+        name: packed(np.minimum.reduceat(own, frames), "f4")
+        for name, own in measures.items()
+    }
+
+
+def _kinematics(robot: Robot) -> dict[str, Any]:
+    """Frames as matrices, row by row."""
+    return {
+        "placement": robot.placement.reshape(-1, 16).tolist(),
+        "axis": robot.axis.tolist(),
+        "slides": robot.slides.tolist(),
+        "tip": robot.tip.ravel().tolist(),
+        "followers": [
+            {
+                "parent": each.parent,
+                "placement": each.placement.ravel().tolist(),
+                "axis": each.axis.tolist(),
+                "slides": each.slides,
+                "leader": each.leader,
+                "multiplier": each.multiplier,
+                "offset": each.offset,
+            }
+            for each in robot.followers
+        ],
+    }
+
+
+def _limits(prepared: PreparedScene) -> dict[str, Any]:
+    least, robot = prepared.arm.conditioning, prepared.robot
+    tested = prepared.setup.constraints.conditioning
+    lower, upper = (
+        [limit if np.isfinite(limit) else None for limit in limits.tolist()]
+        for limits in (robot.lower, robot.upper)
+    )
+    return {
+        "lower": lower,
+        "upper": upper,
+        "determinant": least.min_task_determinant if tested else None,
+        "manipulability": least.min_manipulability if tested else None,
+    }
+
+
+def _marks(
+    trajectory: Trajectory, faults: Sequence[Fault], surface: TriangleMesh
+) -> list[dict[str, Any]]:
+    """Marks on the part: extra lift-offs, the largest left-out places, and faults."""
+
+    def mark(place: Sequence[float], text: str, **more: Any) -> dict[str, Any]:
+        nearest = np.argmin(np.linalg.norm(surface.points - place, axis=1))
+        at = Text(text, np.array(place), surface.vertex_normals[nearest])
+        return text_data(at) | more
+
+    marks = [mark(own.place, f"extra lift-off: {own.reason}") for own in trajectory.extra_lift_offs]
+    largest = sorted(trajectory.left_out, key=lambda part: -part.area_m2)[:_MOST_DOTS]
+    marks += [mark(part.place, "", kind="dot") for part in largest]
+    marks += [
+        mark(fault.place, fault.kind, kind="mark fault", time=fault.time)
+        for fault in faults[:_MOST_MARKS]
+        if fault.place is not None and fault.time is not None
+    ]
+    return marks
+
+
+def frames_of(trajectory: Trajectory, most: int) -> Index:
+    """The samples to draw, ascending, evenly spread over the travel of the joints.
+
+    Time has a small weight as well, so that there are samples where the joints rest, and so do
+    turns of the tip's path, so that its corners stay. The ends of strokes and of moves that were
+    not planned are always included.
+
+    Args:
+        trajectory: one sample or more.
+        most: the most samples, not counting these ends.
+    """
+    count = len(trajectory.times)
+    if count <= most:
+        return np.arange(count)
+    inside = [end for first, after in trajectory.strokes for end in (first, after - 1)]
+    inside += [end for sample in trajectory.unplanned for end in (sample, sample + 1)]
+    ends = np.array([0, count - 1, *inside], dtype=np.int64)
+    travel = np.abs(np.diff(trajectory.joints, axis=0)).max(axis=1)
+    turn = _turns(trajectory.points)
+    steps = sum(
+        weight * own / (own.sum() or 1.0)
+        for weight, own in ((1.0, travel), (0.2, np.diff(trajectory.times)), (1.0, turn))
+    )
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    even = np.searchsorted(along, np.linspace(0, along[-1], most))
+    return np.unique(np.concatenate([ends, np.minimum(even, count - 1)]))
+
+
+def _turns(points: Array) -> Array:
+    """By how much a polyline (k, 3) turns at the end of each of its k - 1 pieces, rad."""
+    way = np.diff(points, axis=0)
+    way /= np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-12)
+    cosine = np.clip((way[:-1] * way[1:]).sum(axis=1), -1, 1)
+    turns: Array = np.append(np.arccos(cosine), 0.0)
+    return turns
