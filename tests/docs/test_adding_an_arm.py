@@ -107,7 +107,7 @@ FAULTS: dict[str, Callable[[Path], Scene]] = {
     "cuspidal": lambda _: cuspidal_scene(),
 }
 
-# Warnings of the table that tests/frontend/arm/test_far_shapes.py and test_tool_sense.py bring about.
+# Warnings of the table; test_far_shapes.py and test_tool_sense.py bring them about.
 WARNINGS = {"m from its joint", "points back to the flange", "back into the arm"}
 
 
