@@ -108,7 +108,8 @@ def read_mesh(file: Path, deadline: Deadline = NEVER) -> tuple[Array, Faces]:
         return read_obj(file, deadline)
     _check_container(file)
     try:
-        mesh = trimesh.load_mesh(file, process=False, maintain_order=True)
+        with np.errstate(all="ignore"):  # what is not finite is refused below
+            mesh = trimesh.load_mesh(file, process=False, maintain_order=True)
         vertices = np.array(mesh.vertices, dtype=np.float64).reshape(-1, 3)
         faces = np.array(mesh.faces, dtype=np.int64).reshape(-1, 3)
     except Exception as error:  # trimesh's readers raise whatever their parsers ran into
