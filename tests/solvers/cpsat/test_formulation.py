@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 from exhaustive_minima import minimum, optimal_schemes
-from hypothesis import given
+from holes import can_be_drawn, set_partitions
+from hypothesis import example, given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 from ortools.sat.python import cp_model
@@ -102,6 +103,33 @@ def test_a_redundant_group_changes_no_minimum(group: str) -> None:
     for seed in range(3):
         instance = small("islands, holes", seed)
         assert model_minimum(instance, rest) == solve(instance, Options(), "dfs").segments
+
+
+@examples(6)
+@given(
+    shape=st.sampled_from([(2, 2, 2), (3, 2, 2), (2, 2, 2, 2)]),
+    colors=st.lists(st.integers(0, 2), min_size=8, max_size=8),
+)
+# Between darts 1 and 2, where the seams begin, a sub-cell is in their way to both holes.
+@example(shape=(4, 2, 2), colors=[0, 0, 1, 1, 1, 1, 1, 1])
+def test_seams_to_several_loops_lose_nothing(shape: tuple[int, ...], colors: list[int]) -> None:
+    """A cell with leaf cells around it and in its holes. Each segment is a sub-cell with leaf cells
+    of one color, so the fewest are those of any grouping that can be drawn."""
+    first = [sum(shape[:number]) + 1 for number in range(len(shape))]
+    loops = tuple(tuple(range(d, d + size)) for d, size in zip(first, shape, strict=True))
+    colors = colors[: sum(shape)]
+    groupings = set_partitions(range(1, sum(shape) + 1))
+    fewest = min(
+        len(groups)
+        for groups in groupings
+        if all(len({colors[dart - 1] for dart in group}) == 1 for group in groups)
+        and can_be_drawn(loops, frozenset(map(frozenset, groups)))
+    )
+    model = CompleteModel(cells_of(((0, 1, 2), *loops), *petal_cells(*colors)))
+    model.model.add(model.segments <= fewest)
+    solver = cp_model.CpSolver()
+    assert solver.solve(model.model) in (cp_model.OPTIMAL, cp_model.FEASIBLE)
+    assert solver.objective_value == fewest
 
 
 @examples(15)
