@@ -12,13 +12,14 @@ from ortools.sat.python import cp_model
 from cellcolor.arrays import Array
 from cellcolor.data.cells_and_edges import strand_of
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division, Solution
+from cellcolor.data.solution import Division, Solution, count_segments
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import TooLarge
 from cellcolor.solvers.checked import passed
 from cellcolor.solvers.cpsat.complete_model import CompleteModel
 from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.interface import Options, Start
+from cellcolor.solvers.joining import joined
 
 _GRAIN = 1e-6  # the model counts costs in whole multiples of it
 _TIME = "the time ended first"
@@ -92,7 +93,10 @@ def _recolored(
         replace(cell, subcells=tuple(replace(s, color=best[s.segment]) for s in cell.subcells))
         for cell in division
     )
-    if cost_of(painted, costs) >= cost_of(division, costs):
+    painted = joined(instance, painted, solution.seams, solution.strands)
+    # If the number is not proved, two segments may have become one: that is another solution.
+    fewer = count_segments(painted) != solution.segments
+    if fewer or cost_of(painted, costs) >= cost_of(division, costs):
         return solution
     return passed(instance, replace(solution, cells=painted))
 
