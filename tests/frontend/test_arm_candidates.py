@@ -1,6 +1,6 @@
 """Each shipped scene and each arm that comes along against Pinocchio and coal, on candidates.
 
-The slow ones are 2,000 candidates each: ``pytest -m slow -n 0 -s tests/frontend -k two_thousand``.
+The slow ones are 2,000 candidates each.
 """
 
 from __future__ import annotations
@@ -93,7 +93,11 @@ def kinematics_apart(prepared: PreparedScene, joints: Array) -> float:
     return worst
 
 
-def check(name: str, vertices: int, count: int) -> None:
+@pytest.mark.parametrize(
+    ("vertices", "count"), [(150, 100), pytest.param(1000, 2000, marks=pytest.mark.slow)]
+)
+@pytest.mark.parametrize("name", SCENES)
+def test_candidates_against_pinocchio_and_coal(name: str, vertices: int, count: int) -> None:
     """Candidates that have a configuration, whatever became of them."""
     scene = scene_of(name).varied(object={"target_vertices": vertices})
     prepared, built = prepare(scene), build_surface(scene)
@@ -137,14 +141,3 @@ def check(name: str, vertices: int, count: int) -> None:
             )
     print(f"\n{name}: {len(joints)} candidates, hits {hits}")
     assert 0 < hits["robot"] < len(joints) and 0 < hits["object"] < len(joints)
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_some_candidates_against_pinocchio_and_coal(name: str) -> None:
-    check(name, vertices=150, count=100)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", SCENES)
-def test_two_thousand_candidates_against_pinocchio_and_coal(name: str) -> None:
-    check(name, vertices=1000, count=2000)

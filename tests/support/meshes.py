@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+import trimesh
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -80,21 +81,8 @@ def octahedron() -> tuple[NDArray[np.float64], Faces]:
 
 def finer(points: NDArray[np.float64], faces: Faces) -> tuple[NDArray[np.float64], Faces]:
     """Every triangle cut into four at the middles of its edges."""
-    middles: dict[tuple[int, int], int] = {}
-    grown = [tuple(point) for point in points.tolist()]
-
-    def middle(a: int, b: int) -> int:
-        key = (min(a, b), max(a, b))
-        if key not in middles:
-            middles[key] = len(grown)
-            grown.append(tuple(((points[a] + points[b]) / 2).tolist()))
-        return middles[key]
-
-    cut: Faces = []
-    for a, b, c in faces:
-        ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
-        cut += [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
-    return np.array(grown), cut
+    made, cut = trimesh.remesh.subdivide(points, np.array(faces))
+    return made, [(a, b, c) for a, b, c in cut.tolist()]
 
 
 def torus(n: int = 4, m: int = 5) -> tuple[NDArray[np.float64], Faces]:

@@ -151,9 +151,12 @@ def check(
     assert (by_fcl != found).sum() <= (len(joints) // 100 if world.margin else 0)
 
 
-def verdicts_agree(
-    robot: Robot, chosen: str, folder: Path, count: int, margin: float = 0.0
+@pytest.mark.parametrize("count", [250, pytest.param(2000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("margin", [0.0, 0.006])
+def test_verdicts_agree(
+    meshed: Robot, chosen: str, tmp_path: Path, margin: float, count: int
 ) -> None:
+    robot = meshed
     joints = configurations(count)
     poses = forward(robot, joints)
     world = Independent(robot, chosen, margin)
@@ -174,7 +177,7 @@ def verdicts_agree(
     standing_there = {
         name: (obstacle, [(shape, coal.Transform3s(np.eye(3), ASIDE))])
         for name, (obstacle, shape) in OBSTACLES.items()
-    } | {kind: standing(kind, ASIDE, folder) for kind in KINDS}
+    } | {kind: standing(kind, ASIDE, tmp_path) for kind in KINDS}
     for name, (obstacle, shapes) in standing_there.items():
         tested = pairs_with(robot, [obstacle.solid()], margin)
         if name == "bead":
@@ -201,17 +204,3 @@ def verdicts_agree(
         world,
         lambda: any(world.touches(link, part, here, vertices[0]) for link in moving),
     )
-
-
-def test_verdicts_agree(meshed: Robot, chosen: str, tmp_path: Path) -> None:
-    verdicts_agree(meshed, chosen, tmp_path, 250)
-
-
-def test_margins_agree(meshed: Robot, chosen: str, tmp_path: Path) -> None:
-    verdicts_agree(meshed, chosen, tmp_path, 250, margin=0.006)
-
-
-@pytest.mark.slow
-def test_two_thousand_verdicts_agree(meshed: Robot, chosen: str, tmp_path: Path) -> None:
-    verdicts_agree(meshed, chosen, tmp_path, 2000)
-    verdicts_agree(meshed, chosen, tmp_path, 2000, margin=0.006)

@@ -82,7 +82,9 @@ def largest_part(
     return float(joint_step(joints[:-1], joints[1:]).max())
 
 
-def check_walks(name: str, vertices: int, count: int, with_coal: int) -> None:
+@pytest.mark.parametrize(("vertices", "count"), [(300, 40), (1000, 1000)])
+@pytest.mark.parametrize("name", NAMES)
+def test_random_walks(name: str, vertices: int, count: int) -> None:
     scene = shipped(name, vertices)
     result, prepared = build_surface(scene), prepare(scene)
     robot = prepared.robot
@@ -109,24 +111,13 @@ def check_walks(name: str, vertices: int, count: int, with_coal: int) -> None:
     assert np.abs(poses.tool_axis - np.concatenate(all_directions)).max() < 1e-9
     # Once more with other code, one by one.
     world = World(robot, prepared.surface.vertices, prepared.surface.faces)
-    for q in np.random.default_rng(1).choice(joints, with_coal):
+    for q in np.random.default_rng(1).choice(joints, count):
         world.place(q)
         assert world.to_itself(PAIRS) > -0.0005
         assert world.to_object() > 0
         assert prepared.scene.ground is not None
         exempt = prepared.setup.robot.may_touch_ground
         assert world.to_ground(prepared.scene.ground.height_m, exempt) > -0.0005
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_some_walks(name: str) -> None:
-    check_walks(name, vertices=300, count=40, with_coal=40)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
-def test_a_thousand_walks(name: str) -> None:
-    check_walks(name, vertices=1000, count=1000, with_coal=1000)
 
 
 @pytest.mark.parametrize(("name", "radius"), [("hemisphere_tilted", 0.105), ("wok", 0.2)])
@@ -156,8 +147,13 @@ def linked_edges(result: BuildResult, edges: Array) -> Array:
     return linked
 
 
-def check_everywhere(name: str, vertices: int) -> None:
-    """Every link at pieces of at most 1 mm, and 21 points of every face with three links."""
+@pytest.mark.parametrize("name", NAMES)
+def test_links_and_faces_everywhere(name: str) -> None:
+    """Every link at pieces of at most 1 mm, and 21 points of every face with three links.
+
+    More than is promised: inside a domain points are farther apart, and faces not looked at.
+    """
+    vertices = 1000
     scene = shipped(name, vertices)
     result, prepared = build_surface(scene), prepare(scene)
     surface = prepared.surface
@@ -195,13 +191,6 @@ def check_everywhere(name: str, vertices: int) -> None:
     assert len(links) > vertices and len(inside) > vertices
     assert (on_links == Reason.VALID).all()
     assert (in_faces == Reason.VALID).all()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
-def test_links_and_faces_everywhere(name: str) -> None:
-    """More than is promised: inside a domain points are farther apart, and faces not looked at."""
-    check_everywhere(name, vertices=1000)
 
 
 def test_an_obstacle_between_two_vertices_is_met() -> None:
