@@ -134,3 +134,16 @@ def test_it_is_dark_where_the_reader_wants_it(pages: dict[str, Path]) -> None:
         ink = page.locator("h1").evaluate("title => getComputedStyle(title).color")
         assert min(map(int, ink[4:-1].split(","))) > 200
         assert near(light, INK) > 0 and faults == []
+
+
+def test_a_window_that_gets_narrow_cuts_nothing_off(pages: dict[str, Path]) -> None:
+    """Until somebody turns the part, which is wider than high here."""
+    with opened(pages["segments"], DESKTOP) as (page, faults):
+        for size in (DESKTOP, PHONE):
+            page.set_viewport_size({"width": size[0], "height": size[1]})
+            shown = pixels(page)
+            empty = shown[shown.shape[0] // 2, 2]  # beside the part
+            rows = slice(60, -60)  # between the buttons
+            for column in (2, 5, -6, -3):
+                assert (abs(shown[rows, column] - empty).max(axis=1) < 20).all()
+        assert faults == []

@@ -103,6 +103,7 @@ class View {
     if (data.motion) this.path(data.motion);
     this.controls = new THREE.OrbitControls(this.camera, this.canvas);
     this.controls.addEventListener("change", () => this.redraw());
+    this.controls.addEventListener("start", () => (this.home = null));
     this.canvas.addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(() => this.resized()).observe(this.canvas.parentElement);
   }
@@ -331,6 +332,7 @@ class View {
     const nearer = { "+": 0.9, "-": 1.1 }[event.key] ?? 1, [across, up] = turns[event.key] ?? [0, 0];
     if (nearer === 1 && !across && !up) return;
     event.preventDefault();
+    this.home = null;
     const { target } = this.controls, way = this.camera.position.clone().sub(target);
     const side = new THREE.Vector3().crossVectors(this.camera.up, way).normalize();
     way.applyAxisAngle(this.camera.up, 0.1 * across);
@@ -346,7 +348,9 @@ class View {
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
-    this.redraw();
+    // Nobody has turned it yet: the whole part is to be seen in the new shape of the picture.
+    if (this.home && this.home.aspect !== this.camera.aspect) this.look(this.home.alone);
+    else this.redraw();
   }
 
   redraw() {
