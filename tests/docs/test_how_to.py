@@ -92,26 +92,9 @@ def test_a_bound(clone: Path) -> None:
     assert (done.returncode, done.stdout) == (0, printed.text), done.stderr
 
 
-@pytest.mark.slow
-def test_a_family(clone: Path) -> None:
-    chains, top, line, *_ = found = blocks("extend", "A family of instances")
-    for block in (chains, top, line):
-        follow(block, clone)
-    (bench,) = commands(found)
-    done = run(bench, clone, clone)
-    assert done.returncode == 0, done.stderr
-    assert re.search(r"(\d+) runs, \1 with a proved minimum", done.stdout), done.stdout
-    script = (
-        "from cellcolor.lab.families import SMALL\n"
-        "made = [SMALL['chains'](seed) for seed in (0, 0, 1)]\n"
-        "print(made[0].sha256 == made[1].sha256 != made[2].sha256)\n"
-    )
-    assert run([sys.executable, "-c", script], clone, clone).stdout == "True\n"
-
-
 @pytest.mark.parametrize(
     ("guide", "heading"),
-    [("add-a-solver", ""), ("extend", "A picture"), ("extend", "A family of instances")],
+    [("add-a-solver", ""), ("extend", "A picture")],
 )
 def test_one_screen(guide: str, heading: str) -> None:
     assert len(section(guide, heading).splitlines()) <= 80
