@@ -84,6 +84,7 @@ class Numbers(click.ParamType):  # type: ignore[type-arg]
         self.said, self.count, self.word = said, count, word
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """A tuple of numbers, or the word."""
         if isinstance(value, tuple) or value == self.word:
             return value
         try:
