@@ -60,9 +60,13 @@ def test_a_solver(tmp_path: Path) -> None:
 
     raced = run(race, ROOT, site)
     assert raced.returncode == 0, raced.stderr
-    (row,) = [line.split() for line in raced.stdout.splitlines() if line.split()[:1] == ["ring"]]
-    # Cells, live darts, segments, seconds of CP-SAT, which proves the minimum, and of this one.
-    assert (row[3], row[5:]) == ("2", ["not", "proved"])
+    # CP-SAT proves the minimum, this one proves nothing.
+    table = [
+        "| Minima proved, of runs | cp-sat | random |",
+        "|---|--:|--:|",
+        "| paper | 1/1 | 0/1 |",
+    ]
+    assert "\n".join(table) in raced.stdout
 
 
 def test_a_picture(clone: Path) -> None:
