@@ -17,6 +17,7 @@ from cellcolor.cli.options import (
     Count,
     Numbers,
     Real,
+    Stops,
     cellcolor,
     json_option,
     option,
@@ -238,6 +239,14 @@ def place(
     multiple=True,
 )
 @option(
+    "--stops",
+    Stops(),
+    "Where a joint that carries the arm, such as a rail, may stand while the tool works: m or rad. "
+    "May be given once for each such joint.",
+    metavar="JOINT=FROM:TO:STEP",
+    multiple=True,
+)
+@option(
     "--cover",
     SHARE,
     "The share to be covered of what any of these set-ups reaches, 0 to 1.",
@@ -257,6 +266,7 @@ def setups(
     scene: Path,
     at: tuple[tuple[float, ...], ...],
     places: Path | None,
+    stops: tuple[tuple[str, tuple[float, ...]], ...],
     output: Path | None,
     folder: Path | None,
     as_json: bool,
@@ -264,7 +274,8 @@ def setups(
 ) -> Exit:
     """Print which set-ups of a part cover it with the fewest lift-offs, with proof.
 
-    A set-up is the part in one place before one arm. SCENE itself is one of them.
+    A set-up is the part in one place before one arm. SCENE itself is one of them; with --stops each
+    of these is one instead.
     """
     from cellcolor.door.drawing import kind_of_picture
     from cellcolor.door.setting_up import places_in
@@ -277,7 +288,7 @@ def setups(
         is_folder_or_nothing(folder)
     all_places = [*at, *([] if places is None else places_in(places))]
     with at_work(scene, "setting up", "the time limit came before there was a choice") as tell:
-        found = set_ups_of(scene, at=all_places, progress=tell, **search)
+        found = set_ups_of(scene, at=all_places, stops=dict(stops) or None, progress=tell, **search)
     _print(scene, [found.answer.to_document()], found, as_json)
     if output is not None:
         found.plot(output)

@@ -69,6 +69,9 @@ class Real(click.FloatRange):
         return number
 
 
+_MOST_STOPS = 1000
+
+
 class Numbers(click.ParamType):  # type: ignore[type-arg]
     """Numbers with commas between; whoever takes them says what they may be.
 
@@ -94,6 +97,28 @@ class Numbers(click.ParamType):  # type: ignore[type-arg]
         if len(numbers) != (self.count or len(numbers) or 1):
             self.fail(f"{self.said}, is {value!r}.", param, ctx)
         return numbers
+
+
+class Stops(click.ParamType):  # type: ignore[type-arg]
+    """A joint and where it may stand: its name, and evenly spaced positions up to the last."""
+
+    name = "stops"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        if isinstance(value, tuple):
+            return value
+        joint, _, spaced = value.partition("=")
+        try:
+            low, high, step = map(float, spaced.split(":"))
+            count = (high - low) / step
+        except (ValueError, ZeroDivisionError):
+            count = -1.0
+        if not joint or not 0 <= count <= _MOST_STOPS:
+            asked = (
+                f"stops are JOINT=FROM:TO:STEP, at most {_MOST_STOPS}, as in rail_joint=0:2:0.25"
+            )
+            self.fail(f"{asked}, is {value!r}.", param, ctx)
+        return joint, tuple(low + step * number for number in range(int(count + 1e-9) + 1))
 
 
 class _Input(click.Path):

@@ -64,6 +64,8 @@ def print_solution(instance: Instance, solution: Solution) -> None:
             out.print("ranges: the cut through a divided cell may run anywhere between its ends")
             out.print()
     say(solution.in_words(instance))
+    if solution.preference is not None:
+        say(f"posture: {solution.preference}")
     if solution.schemes is not None:
         say(f"{count(solution.schemes, 'scheme')} ({_extent(solution)})")
     for note in solution.notes:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -217,6 +217,13 @@ class LibraryIndex(Document):
         for place, entry in enumerate(self.entries):
             if names[entry.name] > 1:
                 raise InputError(None, f"entries[{place}].name", f"{entry.name!r} appears twice")
+
+    def __len__(self) -> int:
+        return len(self.entries)
+
+    def __iter__(self) -> Iterator[str]:
+        """The names, in order, as of a mapping."""
+        return (entry.name for entry in self.entries)
 
     def __getitem__(self, name: str) -> LibraryEntry:
         """The entry of a name.

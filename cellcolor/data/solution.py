@@ -121,6 +121,36 @@ class ModelSize(Value):
         return f"{self.variables:,} variables, {self.constraints:,} constraints"
 
 
+@dataclass(frozen=True, slots=True)
+class Preference(Value):
+    """What was preferred among divisions with as few segments (docs/motion.md, "Posture").
+
+    Attributes:
+        posture: ``near-home`` or ``well-conditioned``.
+        cost: the mean over the area: how far a joint is from home, rad; or from 0, best, to 1.
+        branch: what was to be painted in some branches first; None if none was named.
+        outside: the share of the area that is painted in other branches.
+        unproved: why it is not proved that no division with as many segments costs less; None if
+            it is.
+    """
+
+    posture: Literal["near-home", "well-conditioned"]
+    cost: NonNegativeFloat
+    branch: str | None = None
+    outside: NonNegativeFloat = 0.0
+    unproved: str | None = None
+
+    def __str__(self) -> str:
+        said = f"conditioning {self.cost:.2f} from 0, best, to 1"
+        if self.posture == "near-home":
+            said = f"joints {self.cost:.2f} rad from home on average"
+        if self.branch is not None:
+            said = f"{self.outside:.1%} of the area not {self.branch}, {said}"
+        if self.unproved is not None:
+            return f"{said}, not proved to be the best: {self.unproved}"
+        return f"{said}, proved to be the best with as many segments"
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class Solution(Document):
     """A solver's answer, never stronger than its proof.
@@ -149,10 +179,11 @@ class Solution(Document):
         coverage: the instance's, so that the solution alone gives the shares.
         notes: what was left out and why, a sentence each.
         model: how large the complete model is, where one was built and solved.
+        preference: which of several divisions a scene's is.
     """
 
     FORMAT = "cellcolor/solution"
-    ADDED = (("bounds", "coverage", "notes", "instance.of"), ("model",))
+    ADDED = (("bounds", "coverage", "notes", "instance.of"), ("model", "preference"))
     LINES = ("bounds", "cells")
 
     instance: InstanceReference
@@ -176,6 +207,7 @@ class Solution(Document):
     coverage: Coverage | None = None
     notes: tuple[str, ...] = ()
     model: ModelSize | None = None
+    preference: Preference | None = None
 
     def __post_init__(self) -> None:
         settle(self)

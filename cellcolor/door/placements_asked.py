@@ -110,7 +110,12 @@ class AskedPlacements(AbstractContextManager["AskedPlacements"]):
             self._file.__exit__()
 
     def minima(
-        self, workers: Workers | None, scene: Scene, mesh: str, poses: Sequence[Pose]
+        self,
+        workers: Workers | None,
+        scene: Scene,
+        mesh: str,
+        poses: Sequence[Pose],
+        cover: float | None = None,
     ) -> list[PlacedMinimum]:
         """A row for each placement, in order; fewer if the deadline comes first.
 
@@ -118,6 +123,8 @@ class AskedPlacements(AbstractContextManager["AskedPlacements"]):
             workers: the processes that compute; None for this one.
             scene: its own placement does not matter.
             mesh: what the table calls this scene's mesh.
+            cover: the share that is enough, for bounds where nothing better is known; the same for
+                all placements of a mesh. None for whole builds.
 
         Raises:
             OutOfTime: the deadline came before the first.
@@ -125,15 +132,21 @@ class AskedPlacements(AbstractContextManager["AskedPlacements"]):
         """
         self._deadline.check()
         slots = 1 if workers is None else workers.slots
-        new = [pose for pose in dict.fromkeys(poses) if (mesh, pose) not in self._known]
+        known = {
+            pose: row
+            for (its, pose), row in self._known.items()
+            if its == mesh and (cover is not None or not row.at_least)
+        }
+        new = [pose for pose in dict.fromkeys(poses) if pose not in known]
         size = min(_BATCH, -(-len(new) // slots) or 1)
         parts = [new[at : at + size] for at in range(0, len(new), size)]
-        for rows in self._asked(workers, scene, parts):
+        for rows in self._asked(workers, scene, parts, cover):
             for row in rows:
+                known[row.pose] = row
                 self._keep(mesh, row)
             self._done += len(rows)
             self._report(f"{self._done} placements")
-        return [self._known[mesh, pose] for pose in poses if (mesh, pose) in self._known]
+        return [known[pose] for pose in poses if pose in known]
 
     def _keep(self, mesh: str, row: PlacedMinimum) -> None:
         """Keep a row; write it to the file only if another run could not improve it."""
@@ -143,12 +156,16 @@ class AskedPlacements(AbstractContextManager["AskedPlacements"]):
             self._file.append(PlacementRow(self._scene, mesh, *row.pose, *found, row.refused))
 
     def _asked(
-        self, workers: Workers | None, scene: Scene, parts: Sequence[Sequence[Pose]]
+        self,
+        workers: Workers | None,
+        scene: Scene,
+        parts: Sequence[Sequence[Pose]],
+        cover: float | None,
     ) -> Iterator[list[PlacedMinimum]]:
         """The rows of each part, in the order in which the parts are done."""
         from cellcolor.questions.placing import minima_at
 
-        how = 1, self._question.seed, self._question.base
+        how = 1, self._question.seed, self._question.base, cover
         if workers is None:
             for part in parts:
                 yield minima_at(scene, part, self._deadline.left, *how)

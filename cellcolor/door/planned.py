@@ -236,6 +236,8 @@ class PlannedScene(UnfinishedPlan):
     def __str__(self) -> str:
         extra = len(self.trajectory.extra_lift_offs)
         said = [f"{self.built.surface.name}: {self.result}", str(self.paths)]
+        if self.solution.preference is not None:
+            said.insert(1, f"posture: {self.solution.preference}")
         if len(self.painted.minima) > 1:
             earlier = ", ".join(map(str, self.painted.minima[:-1]))
             said.insert(1, f"refined where the scene refused a painting; {earlier} segments before")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -94,6 +94,7 @@ def setups(
     *,
     at: Sequence[Sequence[float]] | Placements = (),
     others: Sequence[str | PathLike[str] | Scene] = (),
+    stops: Mapping[str, Sequence[float]] | None = None,
     cover: float = 1.0,
     change_over: float | None = None,
     **search: Unpack[SearchAndTell],
@@ -107,6 +108,9 @@ def setups(
         at: where else the part may stand: x, y, z in m and roll, pitch, yaw in rad of each place
             (extrinsic, as in a scene), or what ``place`` has tried.
         others: other scenes of the same part, such as with another arm.
+        stops: of external axes of the scene, such as a rail, where each may stand while the tool
+            works, rad, or m of a prismatic one. Each combination is a candidate, in the place of
+            the scene as it is; the arm does not drive them, so their moves are not planned.
         cover: the share that has to be covered of the area that any candidate reaches, 0 to 1.
         change_over: what a change from one set-up to the next costs, in lift-offs, 1 to 1,000,000
             with up to three decimals; None for the fewest set-ups first, then the fewest lift-offs.
@@ -128,11 +132,15 @@ def setups(
     given = [scene_or_file(one) for one in (scene, *others)]
     with extras_for("the front end"):
         from cellcolor.frontend.scene import Scene as SceneValue
-        from cellcolor.questions.setting_up import candidates_of, plan_of
+        from cellcolor.questions.setting_up import at_stops, candidates_of, plan_of
 
     scenes = [one if isinstance(one, SceneValue) else SceneValue.read(one) for one in given]
+    if stops is not None:
+        scenes[:1] = at_stops(scenes[0], stops)
     building, by_hand = options.deadline.share(_FOR_BUILDING), not isinstance(at, Placements)
-    found = candidates_of(scenes, poses, building, progress, by_hand=by_hand)
+    found = candidates_of(
+        scenes, poses, building, progress, by_hand=by_hand, stops=stops is not None
+    )
     answer = plan_of(found, cover, change_over, options, progress)
     return ChosenSetUps(answer, tuple(found.scenes[one.number - 1] for one in answer.set_ups))
 

@@ -124,6 +124,10 @@ def solve(
 
     solution = checked.solve(instance, options, solver, told)
     gap.append(GapStep(time.monotonic() - begun, solution.segments, solution.lower_bound))
+    if subject.built is not None:
+        from cellcolor.motion.posture import with_best_posture
+
+        solution = with_best_posture(subject.built, subject.decomposition, solution, options)
     notes = [*_tolerance_in_words(subject), *left_out, *solution.notes]
     notes += _raw_minimum(subject, options)
     notes += _minimum_modulo(solution, subject, options)

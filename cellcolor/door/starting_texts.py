@@ -80,6 +80,11 @@ clearance_m = 0.005                 # to everything, between strokes
 # Where the arm begins and ends; free in this scene, over the part if there is room.
 $home
 
+# Of divisions with as few lift-offs the one nearest to home_rad (docs/motion.md, "Posture").
+# [prefer]
+# posture = "well-conditioned"      # the one farthest from limits and singularities
+# branch = "shoulder-left"          # these words of a branch's name first
+
 # For programs (docs/formats/other-programs.md); an arm of Universal Robots needs no table.
 # [controller]
 # language = "rapid"                # urscript, rapid, krl or fanuc

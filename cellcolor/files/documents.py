@@ -9,6 +9,7 @@ from os import PathLike
 from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
+from pydantic_core import ErrorDetails
 
 from cellcolor.errors import InputError, naming
 from cellcolor.files.paths import path_of
@@ -161,7 +162,7 @@ def first_fault(error: ValidationError) -> tuple[tuple[int | str, ...], str]:
     if first["type"] == "missing":
         return place, "is missing"
     if first["type"] not in _UNKNOWN:
-        return place, first["msg"].removeprefix("Value error, ")  # pydantic's for a ValueError
+        return place, _shown(first)
     from difflib import get_close_matches
 
     missing = [
@@ -173,6 +174,20 @@ def first_fault(error: ValidationError) -> tuple[tuple[int | str, ...], str]:
     return place, f"unknown key; is {close[0]!r} meant?" if close else "unknown key"
 
 
+def _shown(fault: ErrorDetails) -> str:
+    """What is wrong with a value, and the value if it is short."""
+    message = fault["msg"].removeprefix("Value error, ")  # pydantic's for a ValueError
+    given = fault["input"]
+    simple = given is None or isinstance(given, (bool, int, float, str))
+    if fault["type"] in _OF_ONE_VALUE and simple and len(repr(given)) <= MOST_SHOWN:
+        return f"{message}, is {json.dumps(given, ensure_ascii=False)}"
+    return message
+
+
+MOST_SHOWN = 60
+"""Characters of a value in a message."""
+
+_OF_ONE_VALUE = ("int_type", "int_from_float", "float_type", "string_type", "literal_error")
 _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 
 

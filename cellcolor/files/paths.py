@@ -12,8 +12,11 @@ def path_of(name: str | PathLike[str]) -> Path:
     """The path that a file's name stands for.
 
     Raises:
-        InputError: it is neither a text nor a path, or an empty text.
+        InputError: it is neither a text nor a path, an empty text, or the content of a file.
     """
+    if isinstance(name, str) and name.lstrip().startswith(("{", "[")):
+        start = f"{name[:30]}…" if len(name) > 30 else name
+        raise InputError(None, None, f"{start!r} is the content of a file, not its name")
     try:
         if isinstance(name, str) and not name:
             raise TypeError  # pathlib would take it for the folder that one is in

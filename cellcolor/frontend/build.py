@@ -345,7 +345,7 @@ def _meta(scene: Scene, stages: Stages, seconds: dict[str, float]) -> dict[str, 
     return {
         "scene": scene.model_dump(mode="json"),
         # How the arm moves later has no part in what a surface is.
-        "setup": scene.setup.model_dump(mode="json", exclude={"motion"}),
+        "setup": scene.setup.model_dump(mode="json", exclude={"motion", "prefer"}),
         "versions": {"cellcolor": __version__} | versions,
         "seconds": {stage: round(value, 4) for stage, value in seconds.items()},
     } | ({} if slivers is None else {"slivers": asdict(slivers)})

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from cellcolor.arrays import Array
 from cellcolor.data.wording import in_meters, looks_like_millimeters
 from cellcolor.errors import InputError
 from cellcolor.frontend.contact.obstacle import HalfSpaceObstacle
@@ -23,13 +24,14 @@ _REACHES = 20  # a wing of 10 m is a part; what is larger than this, or as far a
 _PLAUSIBLE = 0.2  # of the reach: a tool of that radius is a large one
 
 
-def check_part(part: Surface, scene: Scene, reach: float) -> None:
+def check_part(part: Surface, scene: Scene, reach: float, base: Array) -> None:
     """Reject a part that is far too large for an arm, or far too distant.
 
     Args:
         part: in the world, m.
         scene: that it is from.
         reach: of the arm, m.
+        base: (3,) where the arm's base stands in the world, m.
     """
     largest = float(np.ptp(part.vertices, axis=0).max())
     if largest > _REACHES * reach:
@@ -39,7 +41,7 @@ def check_part(part: Surface, scene: Scene, reach: float) -> None:
             f"({reach:.3g} m): {meant}"
         )
         raise InputError(None, field, message)
-    away = float(np.linalg.norm(part.vertices, axis=1).min())
+    away = float(np.linalg.norm(part.vertices - base, axis=1).min())
     if away > _REACHES * reach:
         place = np.array(scene.placement.position_m)
         far = f"the part is {away:.3g} m from the robot's base, {away / reach:.0f} times the arm's "

@@ -115,7 +115,7 @@ class PreparedScene:
 
     def _standing(self, scene: Scene, around: Workplace) -> PreparedScene:
         surface, workplace = _in_place(scene, self.part, around)
-        check_part(surface, scene, self.kinematics.reach)
+        check_part(surface, scene, self.kinematics.reach, self.robot.base_frame(None)[:3, 3])
         judge = Judge(workplace, scene.validity_test)
         return named(PreparedScene(scene, workplace, self.part, surface, judge, self.notes))
 
@@ -162,7 +162,7 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     arm = prepare_arm(setup)
     covered = scene.covered(deadline)
     surface = covered.placed(scene.placement)
-    check_part(surface, scene, arm.kinematics.reach)
+    check_part(surface, scene, arm.kinematics.reach, arm.robot.base_frame(None)[:3, 3])
     lengths = surface.lengths(surface.edges())
     with naming(setup.file):
         check_setup(setup, surface, scene, arm.kinematics.reach)

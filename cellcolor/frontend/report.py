@@ -227,7 +227,8 @@ class Survey:
 
 def survey_of(prepared: PreparedScene) -> Survey:
     """Measure the surface of a scene where it stands."""
-    found = survey(prepared.surface, prepared.kinematics.viewpoints)
+    base = prepared.robot.base_frame(None)[:3, 3]
+    found = survey(prepared.surface, prepared.kinematics.viewpoints, base)
     gravity = np.array(prepared.setup.task.gravity_m_per_s2)
     if not prepared.part.open or not gravity.any():
         return found
@@ -236,13 +237,18 @@ def survey_of(prepared: PreparedScene) -> Survey:
     return replace(found, facing_down=float(mesh.areas[down].sum() / mesh.areas.sum()))
 
 
-def survey(surface: Surface, viewpoints: Array) -> Survey:
-    """Measure the placed surface, seen from some points (v, 3) in the world, m."""
+def survey(surface: Surface, viewpoints: Array, base: Array) -> Survey:
+    """Measure the placed surface, all in the world, m.
+
+    Args:
+        viewpoints: (v, 3) from where it is seen.
+        base: (3,) where the robot's base stands.
+    """
     vertices, faces, mesh = surface.vertices, surface.faces, surface.mesh
-    nearest = trimesh.triangles.closest_point(vertices[faces], np.zeros((len(faces), 3)))
+    nearest = trimesh.triangles.closest_point(vertices[faces], np.tile(base, (len(faces), 1)))
     return Survey(
         tuple((vertices.max(axis=0) - vertices.min(axis=0)).tolist()),
-        float(np.linalg.norm(nearest, axis=1).min()),
+        float(np.linalg.norm(nearest - base, axis=1).min()),
         _from_behind(mesh, viewpoints) if mesh.border.any() else 0.0,
     )
 

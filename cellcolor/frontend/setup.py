@@ -276,6 +276,17 @@ class Motion(Table):
         return None if isinstance(self.home_rad, str) else self.home_rad
 
 
+class Prefer(Table):
+    """Which posture is preferred among divisions with as few segments (docs/motion.md, "Posture").
+
+    ``near-home`` is the usual one if ``motion.home_rad`` is a position, else ``well-conditioned``.
+    ``branch`` has words of the names of branches that come first, such as ``shoulder-left``.
+    """
+
+    posture: Literal["near-home", "well-conditioned"] | None = None
+    branch: str | None = None
+
+
 _NAME = re.compile(r"[A-Za-z]\w{0,31}", re.ASCII)
 _NUMBERED = ("krl", "fanuc")  # languages in which tools and work objects are numbered
 
@@ -329,9 +340,9 @@ class Controller(Table):
 
 
 class Setup(FileTable):
-    """Robot, task, thresholds, continuity, slivers, motion and controller, shared by scenes."""
+    """Robot, task, thresholds, continuity, slivers, motion, preference, controller."""
 
-    NEWER = ("margins", "controller")
+    NEWER = ("margins", "prefer", "controller")
 
     robot: RobotFiles
     task: Task
@@ -341,4 +352,12 @@ class Setup(FileTable):
     margins: Margins = Margins()
     slivers: Slivers | None = None
     motion: Motion | None = None
+    prefer: Prefer = Prefer()
     controller: Controller | None = None
+
+    @model_validator(mode="after")
+    def _home_is_known(self) -> Self:
+        if self.prefer.posture == "near-home" and (self.motion is None or self.motion.home is None):
+            message = "prefer.posture 'near-home' needs a position as motion.home_rad"
+            raise PydanticCustomError("no_home", "{message}", {"message": message})
+        return self

@@ -98,6 +98,23 @@ def judged(prepared: PreparedScene, clock: StageClock) -> Stages:
 
 def _judged_in_place(prepared: PreparedScene, clock: StageClock) -> Stages:
     """All stages with the part where it should stand."""
+    deadline, setup = clock.deadline, prepared.setup
+    candidates, tracked = judged_at_vertices(prepared, clock)
+    with clock.timed("continuity"):
+        continuous = continuous_links(prepared, candidates, deadline)
+    candidates, links = with_turn(prepared, candidates), continuous
+    if setup.continuity.validity_spacing_m is not None:
+        with clock.timed("validity between vertices"):
+            links = valid_links(prepared, candidates, continuous, tracked, None, deadline)
+    return colored_stages(prepared, candidates, tracked, continuous, links, clock)
+
+
+def judged_at_vertices(prepared: PreparedScene, clock: StageClock) -> tuple[Candidates, Array]:
+    """All candidates, whatever lies between the vertices, and the points tracked on the bodies.
+
+    Raises:
+        InputError: there are too many vertices for the turns of the tool.
+    """
     deadline, setup, surface = clock.deadline, prepared.setup, prepared.surface
     if setup.task.turn is not None:
         with naming(setup.file):
@@ -107,14 +124,7 @@ def _judged_in_place(prepared: PreparedScene, clock: StageClock) -> Stages:
     clock.begin("validity at the vertices")
     verdicts = prepared.judge(solutions.reshape(-1, solutions.shape[2]), deadline)
     clock.add(verdicts.seconds)
-    candidates, tracked = candidates_of(prepared, verdicts), verdicts.tracked
-    with clock.timed("continuity"):
-        continuous = continuous_links(prepared, candidates, deadline)
-    candidates, links = with_turn(prepared, candidates), continuous
-    if setup.continuity.validity_spacing_m is not None:
-        with clock.timed("validity between vertices"):
-            links = valid_links(prepared, candidates, continuous, tracked, None, deadline)
-    return colored_stages(prepared, candidates, tracked, continuous, links, clock)
+    return candidates_of(prepared, verdicts), verdicts.tracked
 
 
 def colored_stages(

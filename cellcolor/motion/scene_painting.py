@@ -12,16 +12,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, unit
+from cellcolor.arrays import Index, unit
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of
-from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult, result_of
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.frontend.stages import Stages, judged
+from cellcolor.motion.posture import color_costs, with_best_posture
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import Painted, paint
 from cellcolor.solvers.checked import solve
@@ -29,8 +28,6 @@ from cellcolor.solvers.interface import Options
 
 _TIMES = 4
 """The most times that a surface is solved; what the scene still refuses is only reported."""
-_ROOMY = np.pi / 2
-"""rad; a joint at least this far from its limits costs nothing."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +104,8 @@ def paint_scene(
             built = built.without(left_alone[drawn.stands_for])
         decomposition = decomposition_of(built.surface, None, deadline)
         options = Options(solution.search_space, solution.strands, deadline=deadline)
-        solution = solve(decomposition.instance, options)
+        found = solve(decomposition.instance, options)
+        solution = with_best_posture(built, decomposition, found, options)
 
 
 def _refused(painted: Painted, stages: Stages, branch: Index) -> tuple[int, ...]:
@@ -131,29 +129,3 @@ def _refused(painted: Painted, stages: Stages, branch: Index) -> tuple[int, ...]
         if colors[a] not in painted.surface.cracked(a, b):
             refused |= {a, b}
     return tuple(sorted(refused))
-
-
-def color_costs(robot: Robot, candidates: Candidates) -> Array:
-    """How badly conditioned the arm is in each candidate (n, branches), from 0, best, to 1.
-
-    Two things count, and the worse of them: the task determinant as a share of the greatest one on
-    this surface, and how far the joint that is nearest to its limits is from them, as a share of a
-    quarter turn, or of a quarter of the way between them if it is prismatic. Joints may be turned
-    by full circles. Candidates that are not valid cost 1.
-    """
-    valid = candidates.valid
-    determinants = np.where(valid, candidates.determinants, 0.0)
-    greatest = float(determinants.max(initial=0.0))
-    good = determinants / greatest if greatest else determinants
-    joints = np.where(valid[:, :, None], candidates.configurations, 0.0)
-    circle = 2 * np.pi
-    # As far from both limits as full circles allow: the middle is the best place. A joint without
-    # limits has room everywhere.
-    endless = np.isinf(robot.lower)
-    lower, upper = np.where(endless, 0.0, robot.lower), np.where(endless, 0.0, robot.upper)
-    middle, half = (lower + upper) / 2, np.where(endless, np.inf, (upper - lower) / 2)
-    off = np.abs(joints - middle)
-    nearest = np.where(robot.slides, off, np.minimum(off % circle, circle - off % circle))
-    roomy = np.where(robot.slides, half / 2, _ROOMY)
-    room = np.clip((half - nearest) / roomy, 0.0, 1.0).min(axis=2)
-    return np.asarray(np.where(valid, 1.0 - np.minimum(good, room), 1.0))

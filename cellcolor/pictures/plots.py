@@ -122,12 +122,7 @@ def render_map(
         best: the best placements; numbers.
         kind: ``png`` or ``svg``.
     """
-    lift_offs = np.array(
-        [np.nan if r is None or r.lift_offs is None else r.lift_offs for r in tiled.rows]
-    )
-    shares = np.array(
-        [np.nan if r is None or r.lift_offs is None else 100 * r.covered_share for r in tiled.rows]
-    )
+    lift_offs, shares = np.array([*tiled.lift_offs()]), np.array([*tiled.percents()])
     marks = [("+", here), *((str(number), row) for number, row in enumerate(best, 1))]
     with mpl.rc_context(_STYLE):
         figure, axes = _figure(2)
@@ -141,9 +136,14 @@ def render_map(
                     _mark(own, tiled, row, text)
         vertices = max((row.vertices for row in tiled.rows if row is not None), default=0)
         note = f"Mesh of {vertices} vertices, the part in the middle of each tile."
-        if any(row is None or not (row.proved_for_surface or row.refused) for row in tiled.rows):
+        if any(
+            row is None or not (row.proved_for_surface or row.refused or row.at_least)
+            for row in tiled.rows
+        ):
             note += " The time limit came before all was proved."
         note += " Grey: the part cannot stand there."
+        if any(row is not None and row.at_least for row in tiled.rows):
+            note += " Lift-offs: at least, where enough can be covered. Area: at most."
         if len(tiled.ranges) == 2:
             note += " +: where it stands. Numbers: the best placements."
         figure.supxlabel(note, fontsize=7, x=0.01, ha="left")

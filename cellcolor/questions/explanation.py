@@ -141,6 +141,26 @@ class Explanation:
         yield from self.amounts
         yield from self.sets
 
+    @property
+    def only_moving_helps(self) -> bool:
+        """Whether something is left to gain, and nothing that was relaxed gains it.
+
+        Neither saves anything a lift-off nor does it cover more, as far as that is known.
+        """
+        base = self.base
+        left = base.lift_offs != 0 or base.surface_share < 1
+        rows = (*self.alone, *self.amounts, *self.sets)
+        helps = any(
+            row.segments is not None
+            and (
+                base.segments is None
+                or row.segments < base.segments
+                or row.surface_share > base.surface_share
+            )
+            for row in rows
+        )
+        return left and self.complete and not helps
+
     def __str__(self) -> str:
         lines = [f"{self.name}: {self.base}"]
         if self.base.lift_offs == 0:
@@ -154,6 +174,8 @@ class Explanation:
         same = [row for row in self.alone if row.same_as(self.base)]
         if same:
             lines.append(f"  no change without: {', '.join(_in_short(same))}")
+        if self.only_moving_helps:
+            lines.append("  nothing of this helps: move the part (cellcolor place)")
         lines += [f"  at the point, {branch}" for branch in self.here]
         if not self.complete:
             lines.append("  the time limit came before everything was tried")

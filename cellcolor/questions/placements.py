@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
-from math import isfinite
+from math import floor, isfinite, nan
 from typing import Any
 
 from cellcolor.data.prices import check_price
@@ -22,7 +22,8 @@ Ranges = Mapping[str, tuple[float, float]]
 """From where to where each variable goes; those that are missing stay."""
 
 _MOST_TILES = 1000
-_SAME_SHARE = 1e-9
+SAME_SHARE = 1e-9
+"""Shares of an area that differ by no more are the same."""
 _FEW = 3  # reasons of refusals that are told
 
 
@@ -165,12 +166,15 @@ class PlacedMinimum:
         pose: where it stands, or the arm's base if that is moved.
         segments: the fewest that were found; None if the part cannot stand there, or none were
             found in time.
-        covered_share: the area with a color, as a share of the whole surface, 0 to 1.
+        covered_share: the area with a color, as a share of the whole surface, 0 to 1; the most that
+            this can be of a placement that was not built whole.
         proved_for_surface: whether ``segments`` is the fewest of any division of the mesh that was
             solved.
         vertices: of that mesh.
         refused: why the part cannot stand there, or "".
         leeway: how far it may be off, where that was asked.
+        at_least: of a placement that was not built whole, no division that covers enough has fewer
+            segments; 0 of others.
     """
 
     pose: Pose
@@ -180,11 +184,17 @@ class PlacedMinimum:
     vertices: int
     refused: str = ""
     leeway: Leeway | None = None
+    at_least: int = 0
 
     @property
     def lift_offs(self) -> int | None:
         """One between each two segments."""
         return None if self.segments is None else lift_offs_of(self.segments)
+
+    @property
+    def least_lift_offs(self) -> int | None:
+        """Of a placement that was not built whole, at least."""
+        return lift_offs_of(self.at_least) if self.at_least else self.lift_offs
 
     def value(self, variable: str) -> float:
         """Of one of :data:`VARIABLES`."""
@@ -194,14 +204,14 @@ class PlacedMinimum:
         """What a better placement has less of.
 
         Enough area comes first, then the number of segments plus the price of what is left
-        uncovered, then the proof, then the area left uncovered.
+        uncovered, then the proof, then the area left uncovered. A placement that was not built
+        whole has no more of it than it will have then.
         """
-        enough = self.segments is not None and self.covered_share >= cover - _SAME_SHARE
+        segments = self.segments or self.at_least
+        enough = segments > 0 and self.covered_share >= cover - SAME_SHARE
         left = 1.0 - self.covered_share
-        cost = 0.0
-        if enough and self.segments is not None:
-            cost = self.segments + uncovered_price * left
-        return not enough, cost, not self.proved_for_surface, left
+        cost = segments + uncovered_price * left if enough else 0.0
+        return not enough, cost, not (self.proved_for_surface or self.at_least), left
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
@@ -210,6 +220,7 @@ class PlacedMinimum:
             **pose_document(self.pose),
             "lift_offs": self.lift_offs,
             "segments": self.segments,
+            "at_least_segments": self.at_least or self.segments,
             "covered_share": self.covered_share,
             "proved_for_surface": self.proved_for_surface,
             "vertices": self.vertices,
@@ -217,28 +228,53 @@ class PlacedMinimum:
         } | leeway
 
     def __str__(self) -> str:
-        place = pose_in_words(self.pose)
+        place, area = pose_in_words(self.pose), f"{100 * self.covered_share:.1f} % of the area"
+        if self.at_least:
+            least = self.least_lift_offs or 0
+            number = f"at least {count(least, 'lift-off')}, " if least else ""
+            return f"{place}: {number}at most {area}"
         if self.lift_offs is None:
             return f"{place}: {self.refused or 'not solved in time'}"
         proof = "" if self.proved_for_surface else " (not proved)"
         number = count(self.lift_offs, "lift-off")
-        return f"{place}: {number}{proof}, {100 * self.covered_share:.1f} % of the area"
+        return f"{place}: {number}{proof}, {area}"
 
 
 @dataclass(frozen=True, eq=False)
 class PlacementMap:
     """The fewest lift-offs with the part in the middle of each tile, on the coarse mesh.
 
+    Of tiles that are not among the best ones there are bounds, from the vertices and the edges
+    along which the arm moves without a jump.
+
     Attributes:
         ranges: one or two, by their variables.
         tiles: along each.
         rows: of the tiles, row by row: the first variable goes fastest; None where the time limit
             came first.
+        cover: the share that is enough on this mesh.
     """
 
     ranges: Mapping[str, tuple[float, float]]
     tiles: int
     rows: tuple[PlacedMinimum | None, ...]
+    cover: float = 0.0
+
+    def lift_offs(self) -> Iterator[float]:
+        """Of each tile, at least; NaN where the part cannot stand, or where it cannot cover enough.
+
+        Where it was built whole the number is told in any case.
+        """
+        for row in self.rows:
+            short = row is not None and row.at_least and row.rank(self.cover)[0]
+            least = None if row is None or short else row.least_lift_offs
+            yield nan if least is None else least
+
+    def percents(self) -> Iterator[float]:
+        """Of each tile, the area that is covered, at most; NaN where the part cannot stand."""
+        for row in self.rows:
+            stands = row is not None and row.least_lift_offs is not None
+            yield 100 * row.covered_share if row is not None and stands else nan
 
 
 @dataclass(frozen=True, eq=False)
@@ -250,7 +286,8 @@ class Placements:
         cover: the share of the surface that has to be covered.
         here: where the scene has the part, on the scene's own mesh.
         best: the best placements that were found, on the scene's own mesh, the best first.
-        tried: all others, most of them on a coarser mesh, in the order in which they were asked.
+        tried: all others, most of them on a coarser mesh, in the order in which they were asked; of
+            those that could not be among the best there are bounds only.
         complete: whether the time limit left nothing out.
         map: where it was asked for.
         base: whether the arm's base is moved instead of the part.
@@ -283,13 +320,24 @@ class Placements:
                 lines.append(f"     {row.leeway}")
         asked = f"{100 * self.cover:.1f} % of the area"
         if not enough:
-            lines.append(f"  no placement that was tried covers {asked}")
+            lines.append(f"  no placement that was tried covers {asked}{self._most()}")
         refused = Counter(row.refused for row in self.tried if row.refused)
         tried = count(len(self.tried), "placement")
         why = f" ({_most_common(refused)})" if refused else ""
+        bounded = sum(row.at_least > 0 for row in self.tried)
         lines.append(
-            f"  {tried} tried that had to cover {asked}, {refused.total()} of them refused{why}"
+            f"  {tried} tried that had to cover {asked}, {refused.total()} of them refused{why}, "
+            f"{bounded} left aside by bounds"
         )
         if not self.complete:
             lines.append("  the time limit came before everything was tried")
         return "\n".join(lines)
+
+    def _most(self) -> str:
+        """How much of the area can be covered, on the scene's own mesh, and how to ask for it."""
+        solved = [row for row in (self.here, *self.best) if row.segments is not None]
+        if not solved:
+            return ""
+        most = max(solved, key=lambda row: row.covered_share)
+        share = floor(1000 * most.covered_share) / 1000
+        return f"; the most is {most}: ask for it by --cover {share:g}"

@@ -28,11 +28,13 @@ from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.stages import judged
+from cellcolor.questions.bounding_places import bounds_of
 from cellcolor.questions.placements import VARIABLES, PlacedMinimum, Pose, Ranges
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 
 _FITTED = 4  # times that a displacement is scaled; a turn moves points along arcs
+_NOTHING = "nothing is reached"
 _FINE_ENOUGH = 1.5  # times the vertices that are wanted; a mesh up to there is not made coarser
 
 
@@ -167,6 +169,7 @@ def minima_at(
     workers: int | None,
     seed: int,
     base: bool = False,
+    cover: float | None = None,
 ) -> list[PlacedMinimum]:
     """The fewest lift-offs of a scene with its part in several places, a row for each.
 
@@ -178,6 +181,7 @@ def minima_at(
         seconds: time limit; rows not reached by then are missing. Infinite for no limit.
         workers: of CP-SAT, None for its portfolio.
         base: whether the arm's base is moved instead of the part.
+        cover: the share that is enough, for bounds instead of whole builds; None for these.
 
     Raises:
         InputError: the scene cannot be used, wherever the part stands.
@@ -195,8 +199,10 @@ def minima_at(
             else:
                 there = prepared.amid(moved) if base else prepared.at(placement)
             within = stands_in(there)
-            if within is None:
+            if within is None and cover is None:
                 rows.append(_minimum(there, pose, options))
+            elif within is None:
+                rows.append(_bounds(there, pose, cover or 0.0, deadline))
             else:
                 rows.append(PlacedMinimum(pose, None, 0.0, False, 0, f"stands in {within}"))
         except OutOfTime:
@@ -219,6 +225,14 @@ def stands_in(prepared: PreparedScene) -> str | None:
     return None
 
 
+def _bounds(prepared: PreparedScene, pose: Pose, cover: float, deadline: Deadline) -> PlacedMinimum:
+    share, at_least = bounds_of(prepared, cover, deadline)
+    count = len(prepared.surface.vertices)
+    if not share:
+        return PlacedMinimum(pose, None, 0.0, False, count, _NOTHING)
+    return PlacedMinimum(pose, None, share, False, count, at_least=at_least)
+
+
 def _minimum(prepared: PreparedScene, pose: Pose, options: Options) -> PlacedMinimum:
     clock = StageClock(options.deadline, None)
     surface, _ = labelled(prepared, judged(prepared, clock), {})
@@ -227,6 +241,6 @@ def _minimum(prepared: PreparedScene, pose: Pose, options: Options) -> PlacedMin
     share = float(areas[surface.colored].sum() / areas.sum())
     count = len(surface.vertices)
     if instance.nothing_to_cover:
-        return PlacedMinimum(pose, None, 0.0, False, count, "nothing is reached")
+        return PlacedMinimum(pose, None, 0.0, False, count, _NOTHING)
     solution = checked.solve(instance, options)
     return PlacedMinimum(pose, solution.segments, share, solution.proved_for_surface, count)

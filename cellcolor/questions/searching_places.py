@@ -2,6 +2,10 @@
 
 First come placements all over the ranges, then some in smaller and smaller boxes around the best
 ones. Those that are best then are built and proved on the scene's own mesh.
+
+A placement is built whole only where its bounds
+(:mod:`cellcolor.questions.bounding_places`) leave it a chance to be among the best: which these are
+is the same as if all were built.
 """
 
 from __future__ import annotations
@@ -32,9 +36,9 @@ from cellcolor.questions.placing import (
     spread,
 )
 
-Minima: TypeAlias = Callable[[Scene, str, Sequence[Pose]], list[PlacedMinimum]]
-"""Asks for the minimum of each placement of a scene; the text names the mesh. There are fewer rows
-if the time limit comes first."""
+Minima: TypeAlias = Callable[[Scene, str, Sequence[Pose], float | None], list[PlacedMinimum]]
+"""Asks for the minimum of each placement of a scene, or for bounds where the share that is enough
+is given; the text names the mesh. There are fewer rows if the time limit comes first."""
 
 _OWN = "own"  # the mesh of the scene itself
 _CLOSER = (0.3, 0.15, 0.08, 0.04, 0.02)
@@ -66,7 +70,7 @@ def search_places(
     """
     report("where it stands")
     start = (0.0,) * 6 if question.base else pose_of(scene.placement)
-    rows = alone(scene, _OWN, [start])
+    rows = alone(scene, _OWN, [start], None)
     if not rows:
         raise OutOfTime
     if question.cover is None and rows[0].segments is None:
@@ -107,6 +111,7 @@ class _Search:
         self._tried: list[PlacedMinimum] = []
         self._listed: list[PlacedMinimum] = []
         self._others: list[PlacedMinimum] = []
+        self._chosen: list[Pose] = []
         asked, start = question, here.pose
         if asked.tiles is None:
             self._whole = spread(asked.ranges, start, asked.points, asked.seed)
@@ -118,29 +123,32 @@ class _Search:
         asked = self._question
         self._report("a coarse mesh")
         coarse, mesh = coarse_scene(self._scene, asked.vertices, deadline), str(asked.vertices)
-        self._tried += self._minima(coarse, mesh, [self._here.pose, *self._whole])
-        if asked.cover is None and self._tried:
+        if asked.cover is None:
             # The share of a coarse mesh is another one: like is compared with like.
-            self._enough = self._tried[0].covered_share
+            for row in self._minima(coarse, mesh, [self._here.pose]):
+                self._enough = row.covered_share
+        self._try(coarse, mesh, [self._here.pose, *self._whole])
         for number, share in enumerate(_CLOSER, 1):
             each = max(asked.points // 20, 1)
+            best = self._best_of(coarse, mesh, self._tried, _AROUND, self._enough)
             near = [
                 pose
-                for turn, row in enumerate(self._best_of(self._tried, _AROUND, self._enough))
+                for turn, row in enumerate(best)
                 for pose in around(
                     asked.ranges, row.pose, share, each, asked.seed + 10 * number + turn
                 )
             ]
-            self._tried += self._minima(coarse, mesh, near)
+            self._try(coarse, mesh, near)
+        last = self._best_of(coarse, mesh, self._tried, 2 * asked.best, self._enough)
+        self._chosen = [row.pose for row in last]
 
     def prove(self) -> None:
         """Build and prove the best ones on the scene's own mesh."""
         asked = self._question
         self._report("proving the best ones")
-        chosen = [row.pose for row in self._best_of(self._tried, 2 * asked.best, self._enough)]
-        proved = self._minima(self._scene, _OWN, chosen)
-        self._listed = self._best_of(proved, asked.best, self._cover)
-        self._others = [row for row in proved if row not in self._listed]
+        rows = self._minima(self._scene, _OWN, self._chosen, self._cover)
+        self._listed = self._best_of(self._scene, _OWN, rows, asked.best, self._cover)
+        self._others = [row for row in rows if row not in self._listed]
         if asked.leeway is None:
             return
         for number, row in enumerate(self._listed):
@@ -153,7 +161,7 @@ class _Search:
         if asked.tiles is not None:
             by_pose = {row.pose: row for row in self._tried}
             tiles = tuple(by_pose.get(pose) for pose in self._whole)
-            tiled = PlacementMap(asked.ranges, asked.tiles, tiles)
+            tiled = PlacementMap(asked.ranges, asked.tiles, tiles, self._enough)
         return Placements(
             self._scene.name,
             self._cover,
@@ -166,21 +174,43 @@ class _Search:
             asked.uncovered_price,
         )
 
-    def _minima(self, scene: Scene, mesh: str, poses: Sequence[Pose]) -> list[PlacedMinimum]:
-        rows = self._many(scene, mesh, poses)
+    def _minima(
+        self, scene: Scene, mesh: str, poses: Sequence[Pose], cover: float | None = None
+    ) -> list[PlacedMinimum]:
+        rows = self._many(scene, mesh, poses, cover)
         self.complete &= len(rows) == len(poses)
         return rows
 
+    def _try(self, coarse: Scene, mesh: str, poses: Sequence[Pose]) -> None:
+        self._tried += self._minima(coarse, mesh, poses, self._enough)
+
     def _best_of(
+        self, scene: Scene, mesh: str, rows: list[PlacedMinimum], count: int, cover: float
+    ) -> list[PlacedMinimum]:
+        """The best ones in the ranges, none of them next to a better one.
+
+        Of rows with bounds those that look best are built, and put in their places, until none that
+        is left could be among the best.
+        """
+        while True:
+            chosen = self._look_best(rows, count, cover)
+            open_ = [row.pose for row in chosen if row.at_least]
+            if not open_:
+                return chosen
+            built = {row.pose: row for row in self._minima(scene, mesh, open_)}
+            rows[:] = [built.get(row.pose, row) for row in rows]
+            if len(built) < len(open_):
+                raise OutOfTime
+
+    def _look_best(
         self, rows: Sequence[PlacedMinimum], count: int, cover: float
     ) -> list[PlacedMinimum]:
-        """The best ones in the ranges, none of them next to a better one."""
         ranges, price = self._question.ranges, self._question.uncovered_price
         chosen: list[PlacedMinimum] = []
         allowed = [row for row in rows if is_inside(ranges, row.pose)]  # the start may not be
         for row in sorted(allowed, key=lambda row: row.rank(cover, price)):
             apart = all(distance(ranges, row.pose, other.pose) >= _NEXT for other in chosen)
-            if row.segments is not None and apart and len(chosen) < count:
+            if (row.segments or row.at_least) and apart and len(chosen) < count:
                 chosen.append(row)
         return chosen
 

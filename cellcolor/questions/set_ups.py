@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count, lift_offs_of
 from cellcolor.questions.placements import Pose, pose_document, pose_in_words
+
+
+def positions_in_words(joints: Mapping[str, float]) -> str:
+    """Where joints stand still, rad or m."""
+    return ", ".join(f"{name} = {position:.4g}" for name, position in joints.items())
 
 
 @dataclass(frozen=True)
@@ -22,6 +27,7 @@ class SetUp:
         pose: where the part stands in it.
         segments: that are painted here.
         covered_share: of the area that any set-up reaches, what is painted here, 0 to 1.
+        fixed_joints: where the joints stand that do not move here, rad, or m of prismatic ones.
     """
 
     number: int
@@ -29,6 +35,7 @@ class SetUp:
     pose: Pose
     segments: int
     covered_share: float
+    fixed_joints: Mapping[str, float] = field(default_factory=dict)
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
@@ -36,12 +43,15 @@ class SetUp:
             "number": self.number,
             "scene": self.scene,
             **pose_document(self.pose),
+            "fixed_joints": dict(self.fixed_joints),
             "segments": self.segments,
             "covered_share": self.covered_share,
         }
 
     def __str__(self) -> str:
         place = pose_in_words(self.pose)
+        if self.fixed_joints:
+            place += f" with {positions_in_words(self.fixed_joints)}"
         segments = count(self.segments, "segment")
         return f"{self.scene} at {place}: {segments}, {100 * self.covered_share:.1f} %"
 

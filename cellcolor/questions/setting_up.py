@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from cellcolor.frontend.stages import judged
 from cellcolor.questions.choosing_set_ups import Choice, choose
 from cellcolor.questions.placements import Pose
 from cellcolor.questions.placing import pose_of, stands_in
-from cellcolor.questions.set_ups import SetUp, SetUpPlan
+from cellcolor.questions.set_ups import SetUp, SetUpPlan, positions_in_words
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 
@@ -42,6 +43,21 @@ class Candidates:
     left: int = 0
 
 
+def at_stops(scene: Scene, stops: Mapping[str, Sequence[float]]) -> list[Scene]:
+    """The scene with external axes standing still, once for each combination of their stops.
+
+    Args:
+        stops: of each joint where it may stand, rad, or m of a prismatic one.
+    """
+    robot = scene.setup.robot
+    found = []
+    for positions in product(*stops.values()):
+        fixed = {**robot.fixed_joints, **dict(zip(stops, positions, strict=True))}
+        setup = scene.setup.varied(robot={"fixed_joints": fixed}, file=scene.setup.file)
+        found.append(scene.varied(setup=setup, file=scene.file))
+    return found
+
+
 def candidates_of(
     scenes: Sequence[Scene],
     poses: Sequence[Pose],
@@ -49,6 +65,7 @@ def candidates_of(
     progress: Callable[[str], None] | None = None,
     *,
     by_hand: bool = False,
+    stops: bool = False,
 ) -> Candidates:
     """Build each scene with the part where it is, and with the part in each of the other places.
 
@@ -58,6 +75,8 @@ def candidates_of(
         deadline: when to return those built so far.
         by_hand: whether somebody has named each place. Then one in which the part stands in
             something is a mistake, unless it is meant for another of several scenes.
+        stops: whether the scenes are one, with external axes at several stops. Where the part
+            stands in the arm then, the stop is left out.
 
     Raises:
         InputError: a scene cannot be used wherever its part stands, or has another part; or a place
@@ -69,12 +88,14 @@ def candidates_of(
     refused: list[str] = []
     part: LabelledSurface | None = None
     for given in scenes:
-        prepared = prepare(given, deadline)
-        _check_same_part(part, prepared)
+        prepared: PreparedScene | None = None
         for pose in dict.fromkeys((pose_of(given.placement), *poses)):
             report(f"set-up {len(found) + len(refused) + 1}")
+            placement = Placement(position_m=pose[:3], rpy_rad=pose[3:])
             try:
-                surface = _built(prepared, pose, deadline)
+                if prepared is None:
+                    prepared = prepare(given.varied(placement=placement, file=given.file), deadline)
+                surface = _built(prepared.at(placement), deadline)
             except OutOfTime:
                 if not found:
                     raise
@@ -84,14 +105,18 @@ def candidates_of(
             except InputError as error:
                 own_place = pose == pose_of(given.placement)
                 named = (given is not scenes[0]) if own_place else (by_hand and len(scenes) == 1)
-                if named and (error.field or "").startswith("placement"):
+                misplaced = (error.field or "").startswith("placement")
+                if prepared is None and not misplaced:
+                    raise
+                if named and misplaced and not stops:
                     file = None if given.file is None else str(given.file)
                     message = f"{_in_words(pose)} is no set-up: {error.message}"
                     raise InputError(file, "placement", message) from error
-                refused.append(f"{given.name} at {_in_words(pose)}: {error.message}")
+                stop = f" with {positions_in_words(fixed)}" if (fixed := _fixed(given)) else ""
+                refused.append(f"{given.name} at {_in_words(pose)}{stop}: {error.message}")
                 continue
+            _check_same_part(part, prepared)
             part = part or surface
-            placement = Placement(position_m=pose[:3], rpy_rad=pose[3:])
             scene = prepared.scene.varied(placement=placement, file=given.file)
             found.append((scene, surface))
     if not found:
@@ -104,9 +129,12 @@ def _together(found: Sequence[tuple[Scene, LabelledSurface]], refused: Sequence[
     return Candidates(tuple(scenes), tuple(surfaces), tuple(refused))
 
 
-def _built(prepared: PreparedScene, pose: Pose, deadline: Deadline) -> LabelledSurface:
-    """The part in a place, labelled, its vertices in its own frame."""
-    there = prepared.at(Placement(position_m=pose[:3], rpy_rad=pose[3:]))
+def _fixed(scene: Scene) -> dict[str, float]:
+    return scene.setup.robot.fixed_joints
+
+
+def _built(there: PreparedScene, deadline: Deadline) -> LabelledSurface:
+    """The part where it stands, labelled, its vertices in its own frame."""
     within = stands_in(there)
     if within is not None:
         raise InputError(None, "placement", f"the part stands in {within}")
@@ -114,9 +142,9 @@ def _built(prepared: PreparedScene, pose: Pose, deadline: Deadline) -> LabelledS
     if not any(surface.vertex_colors):
         raise InputError(None, None, "nothing is reached")
     decomposition_of(surface, deadline=deadline)  # refuses cells that are not planar
-    own = prepared.part.surface
+    own = there.part.surface
     return LabelledSurface(
-        prepared.scene.name,
+        there.scene.name,
         surface.colors,
         own.vertices,
         own.faces,
@@ -202,7 +230,8 @@ def _set_ups(candidates: Candidates, choice: Choice, whole: float) -> tuple[SetU
 
 def _set_up(candidates: Candidates, number: int, segments: int, share: float) -> SetUp:
     scene = candidates.scenes[number]
-    return SetUp(number + 1, scene.name, pose_of(scene.placement), segments, share)
+    pose = pose_of(scene.placement)
+    return SetUp(number + 1, scene.name, pose, segments, share, _fixed(scene))
 
 
 def _in_words(pose: Pose) -> str:

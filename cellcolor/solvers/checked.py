@@ -129,10 +129,17 @@ def checked_solution(
     Raises:
         RefusedResult: the checker refuses what the solver found.
     """
-    solution = solution_of(instance, options, solver, answer, seconds)
-    # Its certificates have been verified just now.
+    return passed(instance, solution_of(instance, options, solver, answer, seconds))
+
+
+def passed(instance: Instance, solution: Solution) -> Solution:
+    """A solution after the checker has seen it; its certificates have been verified before.
+
+    Raises:
+        RefusedResult: the checker refuses it.
+    """
     bare = tuple(replace(bound, certificate=None) for bound in solution.bounds or ())
-    _insist(check_solution(instance, replace(solution, bounds=bare)), solver)
+    _insist(check_solution(instance, replace(solution, bounds=bare)), solution.solver)
     return solution
 
 

@@ -110,7 +110,7 @@ def test_the_mesh_says_what_the_graph_says(surface: LabelledSurface) -> None:
         ({"cells": [0, 9]}, "there is no cell 9"),
         ({"cells": [0, -1]}, "there is no cell -1"),
         ({"cells": "all"}, "cells: Input should be a valid array"),
-        ({"cells": [True]}, "cells[0]: Input should be a valid integer"),
+        ({"cells": [True]}, "cells[0]: Input should be a valid integer, is true"),
         ({}, "cells: is missing"),
         ({"cells": [0, 1, 2], "hubs": []}, "hubs: unknown key"),
         ({"cells": []}, "fewer than 2 color regions touch all of the cells []"),

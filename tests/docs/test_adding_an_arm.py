@@ -102,9 +102,13 @@ FAULTS: dict[str, Callable[[Path], Scene]] = {
     "redundant": with_seven_joints,
     "knows no closed form": lambda _: plate(dh_arms.urdf("crx10ia"), "eaik"),
     "not a UR-type arm": lambda folder: edit(folder, "kr6.toml", '"eaik"', '"ur"'),
+    "looks like degrees": lambda folder: edit(folder, URDF, '"2.96705972839036"', '"170"'),
     "overlap in all of 100 configurations": with_large_shapes,
     "cuspidal": lambda _: cuspidal_scene(),
 }
+
+# Warnings of the table; test_far_shapes.py and test_tool_sense.py bring them about.
+WARNINGS = {"m from its joint", "points back to the flange", "back into the arm"}
 
 
 def refusals() -> list[str]:
@@ -114,7 +118,7 @@ def refusals() -> list[str]:
 
 
 def test_every_refusal_of_the_guide_is_brought_about() -> None:
-    assert set(refusals()) == set(FAULTS)
+    assert set(refusals()) == set(FAULTS) | WARNINGS
 
 
 @pytest.mark.parametrize("message", FAULTS)

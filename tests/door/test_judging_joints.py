@@ -288,7 +288,7 @@ def test_what_is_no_plan_in_joint_angles_is_refused(make: Any, message: str) -> 
 
 
 def test_in_a_planners_test(tmp_path: Path) -> None:
-    part = SurfaceUnderTest(scene(), 60.0, tmp_path)
+    part = SurfaceUnderTest(scene(), 60.0, tmp_path, lambda *_: None)
     part.assert_optimal(cellcolor.JointPlan(joints_of(scene(), best())))
     path, _ = walk_of(scene(), best())
     part.assert_optimal(path)

@@ -32,6 +32,8 @@ def test_a_scene_is_planned_and_judged(tmp_path: Path) -> None:
     said = str(planned)
     assert "1 segment, 0 lift-offs, optimal" in said
     assert "judge: square: valid" in said
+    assert f"posture: {planned.solution.preference}" in said
+    assert f"Posture: {planned.solution.preference}." in planned.page().decode()
     # A judge that is asked anew, of the files alone, says the same.
     planned.save(tmp_path / "folder")
     assert {file.name for file in (tmp_path / "folder").iterdir()} == set(KINDS) - OTHER_ARMS

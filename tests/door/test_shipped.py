@@ -36,7 +36,9 @@ def test_every_shipped_file_has_its_name() -> None:
 
 @pytest.mark.second
 def test_every_graph_of_the_index_is_opened_by_its_name() -> None:
-    for entry in library().index.entries:
+    index = library().index
+    assert len(index) == len(index.entries) and [index[name] for name in index] == [*index.entries]
+    for entry in index.entries:
         if entry.file is None:
             with pytest.raises(InputError, match=f"{entry.name}: is not shipped; it is data/"):
                 find_file(entry.name)
@@ -105,6 +107,10 @@ def test_a_path_is_no_name() -> None:
         ("wokk.toml", "wokk.toml: No such file or directory"),
         ("some/where", "some/where: No such file or directory"),
         ("", "'' is not a file name"),
+        (
+            '{"format": "cellcolor/plan", "version": 1, "vertex_colors": [0]}',
+            '\'{"format": "cellcolor/plan", "…\' is the content of a file, not its name',
+        ),
         ("a\0b", "is not a file, and nothing of that name is shipped"),
     ],
 )

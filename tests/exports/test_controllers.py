@@ -186,8 +186,7 @@ def on_the_wok(**keys: object) -> PlannedMotion:
 def test_the_force_pulls_against_the_surface_along_the_whole_stroke(name: str) -> None:
     """The interpreter's rule: the task frame of ``force_mode`` stands still until the next call."""
     planned = on_the_wok()
-    robot, (own,) = stand_in().prepared.robot, judged(planned, name)
-    found = read(name, planned)
+    robot, found = stand_in().prepared.robot, read(name, planned)
     base = np.diag([-1.0, -1, 1, 1]) @ found.part
     pull, here, off, begun, turned = None, None, [], None, []
     for move in found.stretches[0]:
@@ -200,13 +199,12 @@ def test_the_force_pulls_against_the_surface_along_the_whole_stroke(name: str) -
             posed = move.pose is not None
             here = base @ move.pose if posed else tip_of(robot, np.radians(move.joints))
             if pull is not None:
-                row = np.linalg.norm(own.points - here[:3, 3], axis=1)[own.contact].argmin()
-                normal = own.normals[own.contact][row]
-                off.append(np.degrees(np.arccos(np.clip(-pull @ normal, -1, 1))))
-                turned.append(np.degrees(np.arccos(np.clip(-begun @ normal, -1, 1))))
+                # The tool's axis, which the judge holds to the normal; this motion cuts corners.
+                off.append(np.degrees(np.arccos(np.clip(pull @ here[:3, 2], -1, 1))))
+                turned.append(np.degrees(np.arccos(np.clip(begun @ here[:3, 2], -1, 1))))
     assert pull is None  # released at the end
     assert max(turned) > 60  # with one call a stroke it would have pulled that far aside
-    assert max(off) <= np.degrees(PRESSED) + 1
+    assert max(off) <= np.degrees(PRESSED) + 1e-3
 
 
 def test_a_stretch_that_begins_in_contact_presses_from_there() -> None:

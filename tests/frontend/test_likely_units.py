@@ -153,7 +153,7 @@ def test_what_is_large_but_may_be_meant(scene: Varied) -> None:
     wing = scene(radius_m=5.5, position_m=(5.0, 0.0, 0.0))
     surface = wing.covered().placed(wing.placement)
     assert np.ptp(surface.vertices, axis=0).max() > 9.9
-    check_part(surface, wing, 1.0)
+    check_part(surface, wing, 1.0, np.zeros(3))
 
 
 @pytest.mark.parametrize("times", [19.9, 20.1])
@@ -165,10 +165,10 @@ def test_the_limit_is_twenty_reaches(scene: Varied, times: float) -> None:
     far = scene(position_m=(0.0, 0.0, -times * reach - 0.2))
     for varied in (large, far):
         if times < 20:
-            check_part(varied.covered().placed(varied.placement), varied, reach)
+            check_part(varied.covered().placed(varied.placement), varied, reach, np.zeros(3))
         else:
             with pytest.raises(InputError, match="times"):
-                check_part(varied.covered().placed(varied.placement), varied, reach)
+                check_part(varied.covered().placed(varied.placement), varied, reach, np.zeros(3))
 
 
 @pytest.mark.second

@@ -35,7 +35,7 @@ def test_size_and_distance_are_those_of_the_faces(geometry: UrGeometry) -> None:
         np.array([[0, 1, 2], [0, 2, 3]]),
         np.tile([0.0, 0, 1], (4, 1)),
     )
-    found = survey(plate, geometry.viewpoints)
+    found = survey(plate, geometry.viewpoints, np.zeros(3))
     assert found.size_m == pytest.approx([2, 4, 0])
     assert found.distance_m == pytest.approx(0.18)
     assert str(found) == "2 x 4 x 0 m, nearest point 0.18 m from the robot's base"
@@ -46,7 +46,7 @@ def test_size_and_distance_are_those_of_the_faces(geometry: UrGeometry) -> None:
 )
 def test_a_wrong_unit_is_seen(scale: float, text: str, geometry: UrGeometry) -> None:
     plate = rectangle(2.0 * scale, 4.0 * scale, *grid_mesh(2.0 * scale, 4.0 * scale, 50, 0.0, 0))
-    assert str(survey(plate, geometry.viewpoints)).startswith(text)
+    assert str(survey(plate, geometry.viewpoints, np.zeros(3))).startswith(text)
 
 
 @given(
@@ -72,8 +72,8 @@ def test_domes_before_the_robot(
     dome = spherical_cap(radius, half_angle, *disc_mesh(target, 0.0, 0)).placed(
         Placement(position_m=position, rpy_rad=(0.0, 0.0, 0.0))
     )
-    assert survey(dome, geometry.viewpoints).from_behind < 0.1
-    (warning,) = survey(turned_over(dome), geometry.viewpoints).warnings
+    assert survey(dome, geometry.viewpoints, np.zeros(3)).from_behind < 0.1
+    (warning,) = survey(turned_over(dome), geometry.viewpoints, np.zeros(3)).warnings
     assert "from behind" in warning
 
 
@@ -89,7 +89,7 @@ def test_what_cannot_be_told(geometry: UrGeometry) -> None:
     corners = np.array([[0.4, 0, 0], [0.6, 0, 0], [0.4, 0.2, 0], [0.4, 0, 0.2]])
     faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
     closed = Surface(corners, faces, np.zeros((4, 3)))
-    assert survey(turned_over(closed), geometry.viewpoints).from_behind == 0
+    assert survey(turned_over(closed), geometry.viewpoints, np.zeros(3)).from_behind == 0
 
 
 def test_report_and_commands_warn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

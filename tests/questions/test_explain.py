@@ -248,6 +248,21 @@ def test_a_scene_that_nothing_of_is_reached() -> None:
     found = cellcolor.explain(far)
     assert [row.segments for row in found] == [None] * len(list(found))
     assert str(found).startswith("square: nothing is reached\n") and found.sets == ()
+    assert "nothing of this helps: move the part" in str(found)
+
+
+@pytest.mark.parametrize(
+    ("segments", "share", "complete", "said"),
+    [(3, 0.9, True, True), (3, 0.95, True, False), (2, 0.8, True, False), (3, 0.9, False, False)],
+)
+def test_the_part_is_to_be_moved_where_nothing_else_helps(
+    segments: int, share: float, complete: bool, said: bool
+) -> None:
+    """Without the ground: the same, more area, fewer lift-offs; or not all was tried."""
+    here = RelaxedMinimum((), (), 3, 3, 1.0, 0.9, True)
+    other = RelaxedMinimum(("ground",), ("ground",), segments, segments, 1.0, share, True)
+    found = Explanation("x", here, (other,), complete=complete)
+    assert ("move the part" in str(found)) == said
 
 
 @pytest.fixture(scope="module")

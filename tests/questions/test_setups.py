@@ -18,13 +18,16 @@ from hypothesis import strategies as st
 from shipped import shipped
 
 import cellcolor
+from cellcolor.cli.options import Stops
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import OutOfTime
 from cellcolor.decomposition import decomposition_of
+from cellcolor.frontend import Scene
 from cellcolor.lab.families import blobs
 from cellcolor.questions import choosing_set_ups, setting_up
 from cellcolor.questions.choosing_set_ups import choose
+from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 from examples import examples
 
@@ -193,6 +196,98 @@ def test_each_set_up_is_driven_and_judged() -> None:
     assert all(one.verdict.valid for one in planned)
     driven = sum(one.trajectory.lift_offs for one in planned)
     assert driven == found.answer.lift_offs
+
+
+def on_a_rail(scene: Scene) -> Scene:
+    """Its arm on a carriage that slides along y, from -1 m to 1 m."""
+    robot = scene.setup.robot
+    text = (scene.setup.folder / robot.arm_urdf).read_text()
+    rail = (
+        '<link name="rail"/><joint name="rail_joint" type="prismatic"><parent link="rail"/>'
+        '<child link="base_link"/><axis xyz="0 1 0"/>'
+        '<limit lower="-1" upper="1" effort="0" velocity="1"/></joint></robot>'
+    )
+    arm = {"arm_urdf": text.replace("</robot>", rail), "fixed_joints": {"rail_joint": 0.0}}
+    tool = {"tool_urdf": (scene.setup.folder / robot.tool_urdf).read_text()}
+    return scene.with_setup(scene.setup.varied(robot=arm | tool))
+
+
+def long_plate() -> Scene:
+    """A plate of 1.6 m along a rail, before the arm: no stop reaches all of it."""
+    plate = {
+        "kind": "rectangle",
+        "size_x_m": 0.2,
+        "size_y_m": 1.6,
+        "target_vertices": 60,
+        "jitter": 0.1,
+        "seed": 3,
+    }
+    return on_a_rail(shipped("square", 60)).varied(
+        object=plate, placement={"position_m": (0.45, 0.0, 0.0)}, ground=None
+    )
+
+
+STOPS = (-0.6, -0.2, 0.2, 0.6)
+
+
+def test_stops_are_the_fewest_and_then_have_the_fewest_lift_offs() -> None:
+    """Against every choice of stops, each built as a scene whose joint is fixed there."""
+    scene = long_plate()
+    found = cellcolor.setups(scene, stops={"rail_joint": STOPS})
+    surfaces = []
+    for stop in STOPS:
+        fixed = scene.setup.varied(robot={"fixed_joints": {"rail_joint": stop}})
+        surfaces.append(cellcolor.build(scene.with_setup(fixed)).surface)
+    sets = covering(surfaces, 1.0)
+    graphs = [decomposition_of(together([surfaces[n] for n in some])).instance for some in sets]
+    assert found.answer.proved and found.answer.candidates == len(STOPS)
+    assert len(found.answer.set_ups) == len(sets[0]) > 1
+    assert tuple(one.number - 1 for one in found.answer) in sets
+    assert found.answer.segments == min(
+        checked.solve(graph, Options()).segments for graph in graphs
+    )
+    for one, own in zip(found.answer, found.scenes, strict=True):
+        stands = {"rail_joint": STOPS[one.number - 1]}
+        assert one.fixed_joints == own.setup.robot.fixed_joints == stands
+        assert f"with rail_joint = {stands['rail_joint']:g}: " in str(found)
+
+
+def test_a_stop_at_which_the_part_stands_in_the_arm_is_left_out() -> None:
+    """The plate is over the rail at 0.6 m, where the arm's base would be."""
+    scene = long_plate().varied(placement={"position_m": (0.0, 1.4, 0.1)})
+    found = cellcolor.setups(scene, stops={"rail_joint": (0.2, 0.8)})
+    assert [one.fixed_joints["rail_joint"] for one in found.answer] == [0.2]
+    (refused,) = found.answer.refused
+    assert "rail_joint = 0.8" in refused and "stands in" in refused
+
+
+def test_stops_are_read_and_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    stops = Stops()
+    assert stops.convert("rail=0:0.5:0.25", None, None) == ("rail", (0.0, 0.25, 0.5))
+    assert stops.convert("turn=-1:1:0.8", None, None) == ("turn", (-1.0, -1 + 0.8, -1 + 1.6))
+    for wrong in (
+        "rail",
+        "=0:1:1",
+        "rail=0:1",
+        "rail=0:1:0",
+        "rail=1:0:1",
+        "rail=0:1:nan",
+        "r=0:9:1e-9",
+    ):
+        assert run("setups", "square", "--stops", wrong) == 2
+        assert "stops are JOINT=FROM:TO:STEP" in capsys.readouterr().err
+    assert run("setups", "square", "--stops", "rail_joint=0:1:1") == 2
+    assert "robot.fixed_joints.rail_joint: no such joint" in capsys.readouterr().err
+
+
+def test_the_distance_is_that_from_the_arms_base() -> None:
+    scene = long_plate()
+    near = scene.with_setup(scene.setup.varied(robot={"fixed_joints": {"rail_joint": 0.6}}))
+    far = near.moved(position_m=(0.45, 0.6 + 1.8, 0.0))
+    assert cellcolor.build(scene).report.survey.distance_m == pytest.approx(0.35, abs=0.02)
+    assert cellcolor.build(near).report.survey.distance_m == pytest.approx(0.35, abs=0.02)
+    away = cellcolor.build(far).report.survey.distance_m
+    assert away == pytest.approx(np.hypot(0.35, 1.0), abs=0.02)
 
 
 def test_what_cannot_be_set_up_is_refused_in_a_line(

@@ -244,7 +244,7 @@ CHECK_ERROR: Document = {
     "format": "cellcolor/check-error",
     "version": 1,
     "valid": None,
-    "error": "standard input: vertex_colors[0]: Input should be a valid integer",
+    "error": 'standard input: vertex_colors[0]: Input should be a valid integer, is "x"',
     "at_file": "standard input",
     "at_field": "vertex_colors[0]",
     "exit_code": 2,

@@ -302,9 +302,10 @@ def no_integer(case: Case, random: Random) -> Planted:
     """Something at one vertex that is not a number of a color: NaN, a fraction, True, a list."""
     colors: list[Any] = [*_valid(case.surface, random)]
     vertex = int(random.integers(len(colors)))
-    colors[vertex] = [float("nan"), 0.5, 0.0, True, [0], {}][random.integers(6)]
+    wrong = [(float("nan"), ", is NaN"), (0.5, ", is 0.5"), (0.0, ", is 0.0"), (True, ", is true")]
+    colors[vertex], shown = [*wrong, ([0], ""), ({}, "")][random.integers(6)]
     plan = colors if random.random() < 0.5 else np.array(colors, dtype=object)
-    return Planted(plan, (f"vertex_colors[{vertex}]: Input should be a valid integer",))
+    return Planted(plan, (f"vertex_colors[{vertex}]: Input should be a valid integer{shown}",))
 
 
 def wrong_dtype(case: Case, random: Random) -> Planted:

@@ -232,8 +232,11 @@ def _segments(report: MotionReport) -> Card | None:
                 f"{1e4 * float(areas[vertices].sum()):.0f} cm²",
             )
         )
+    solution = report.solution
+    preference = None if solution is None else solution.preference
+    texts = () if preference is None else (f"Posture: {preference}.",)
     if trajectory is None:
-        return Card("Segments", (), (("", "color", "area"), *rows))
+        return Card("Segments", texts, (("", "color", "area"), *rows))
     steps = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1)
     spent = np.diff(trajectory.times)
     touching = trajectory.contact[1:] & trajectory.contact[:-1]
@@ -244,7 +247,7 @@ def _segments(report: MotionReport) -> Card | None:
     between = float(spent[~touching].sum())
     text = f"Moves between strokes, approaches and retracts take {between:.1f} s."
     table = [row + more for row, more in zip(rows, driven, strict=True)]
-    return Card("Segments", (text,), (("", "color", "area", "path", "in contact"), *table))
+    return Card("Segments", (*texts, text), (("", "color", "area", "path", "in contact"), *table))
 
 
 def _reach(report: MotionReport) -> Card:

@@ -14,13 +14,13 @@ from cellcolor.data.solution import Division, Seam
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.bounds.crossings import enough_crossings
-from cellcolor.solvers.cpsat.dart_graph import complete_graph
-from cellcolor.solvers.cpsat.drawing import seamed
+from cellcolor.solvers.cpsat.dart_graph import complete_graph, dart_graph
+from cellcolor.solvers.cpsat.drawing import moved, seamed
 from cellcolor.solvers.cpsat.formulation import SectorModel
-from cellcolor.solvers.cpsat.painting import Block, canonical, division_of
+from cellcolor.solvers.cpsat.painting import Block, canonical, division_of, painting_of
 from cellcolor.solvers.cpsat.parts import loops_of, seam_places
 from cellcolor.solvers.cpsat.runner import Runner
-from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
+from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
 
 MOST_LITERALS = 1_000_000
 """The most for the colors of sectors, of which 100,000 take 10 seconds and half a gigabyte to
@@ -60,6 +60,13 @@ class CompleteModel(SectorModel):
         self._graph = complete_graph(instance, self._each, self._loops, self._places)
         super().__init__(self._graph, color_regions(instance), MOST_LITERALS, groups, deadline)
         self.hint(self._whole())
+
+    def begin_with(self, start: Start) -> None:
+        """Hint a division, in the place of what is hinted."""
+        graph = dart_graph(self.instance, self._each, start.seams, self._loops)
+        painting = moved(graph, painting_of(graph, start.division), self._graph)
+        self.model.clear_hints()  # type: ignore[no-untyped-call]
+        self.hint(canonical(self._graph, painting))
 
     def read(self, solver: cp_model.CpSolver) -> tuple[Division, tuple[Seam, ...]]:
         """The division that a solver has found, and the seams that its darts refer to."""

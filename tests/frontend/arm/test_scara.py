@@ -45,7 +45,7 @@ from cellcolor.frontend.reach.continuity import stays_in_limits
 from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.validity import turned_into_limits
 from cellcolor.frontend.setup import RobotFiles, Turn
-from cellcolor.motion.scene_painting import color_costs
+from cellcolor.motion.posture import color_costs
 from cellcolor.pictures.arm import draw_arm
 from examples import examples
 
