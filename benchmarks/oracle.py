@@ -3,18 +3,16 @@
     faults    COUNT faults (1,000) planted in valid plans on 64 surfaces, 17 sorts in turn
     valid     COUNT valid plans (1,000) of six sorts on the same surfaces; every seventh is judged
               by an oracle whose time limit left its range open
-    tampered  COUNT kept proofs (500) that somebody has changed, in 32 sorts in turn
     planners  what two planners pay on the six scenes, beside what is proved
 
-Measures how many were refused, contradicted or believed; the seed of each draw is its number. Exit
-code 1 if anything was not as it has to be. docs/measured.md has the first three tables,
+Measures how many were refused or contradicted; the seed of each draw is its number. Exit
+code 1 if anything was not as it has to be. docs/measured.md has the first two tables,
 docs/paper.md the last one.
 """
 
 from __future__ import annotations
 
 import argparse
-import itertools
 import sys
 import tempfile
 from collections import Counter
@@ -36,7 +34,6 @@ from planners import (
     valid_plans,
 )
 from planted_plans import PLANTERS, Case, caught
-from tampered import TAMPERERS, Kept, is_honest, what_is_wrong
 
 import cellcolor
 from cellcolor.arrays import Array
@@ -49,7 +46,6 @@ SCENES = sorted((ROOT / "instances" / "scenes").glob("*.surface.json"))
 STORED = sorted(set((ROOT / "instances").rglob("*.surface.json")) - set(SCENES))
 DIRECTIONS = 18  # of the raster
 LIMIT = 20.0  # seconds for each proof
-LARGEST = 600  # vertices, of a surface whose proofs are tampered with
 
 
 def surfaces() -> Iterator[tuple[LabelledSurface, Array | None]]:
@@ -140,36 +136,6 @@ def valid(count: int) -> bool:
     return not found[columns[-1]].total()
 
 
-def tampered(count: int) -> bool:
-    """Change what is kept, judge with it and print; whether nothing was believed."""
-    pool = [surface for surface, _ in surfaces()]
-    pairs = zip(pool, [*pool[1:], pool[0]], strict=True)
-    small = [Kept(*pair) for pair in pairs if len(pair[0].vertices) < LARGEST]
-    made, believed, names = Counter[str](), Counter[str](), list(TAMPERERS)
-    for number in itertools.count():
-        if made.total() == count:
-            break
-        # Shifted by one each round, so that every sort meets every surface.
-        name, round_number = names[number % len(names)], number // len(names)
-        kept = small[(number + round_number) % len(small)]
-        random = np.random.default_rng(number)
-        tamper, proves_nothing = TAMPERERS[name]
-        content = tamper(kept, random)
-        if is_honest(kept, content):
-            continue
-        wrong = what_is_wrong(kept, content, proves_nothing, random)
-        made[name] += 1
-        believed[name] += bool(wrong)
-        for text in wrong:
-            print(f"{name}, seed {number}, {kept.surface.name}: {text}", flush=True)
-    print(f"{len(small)} surfaces, each with its minimum proved\n")
-    print("| what was kept is changed | times | believed, or a traceback |\n|---|--:|--:|")
-    for name in names:
-        print(f"| {name} | {made[name]} | {believed[name]} |")
-    print(f"| all | {made.total()} | {believed.total()} |")
-    return not believed.total()
-
-
 def planners() -> bool:
     """Lift-offs of two planners on the six scenes, beside the proven minimum."""
     print("| scene | fewest, proved | greedy | nearest along a raster |\n|---|--:|--:|--:|")
@@ -203,13 +169,13 @@ def row_of_planners(file: Path) -> list[str]:
 def main() -> int:
     """Print a table."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("table", choices=["faults", "valid", "tampered", "planners"])
+    parser.add_argument("table", choices=["faults", "valid", "planners"])
     parser.add_argument("count", nargs="?", type=int)
     asked = parser.parse_args()
     if asked.table == "planners":
         return 0 if planners() else 1
-    draw = {"faults": faults, "valid": valid, "tampered": tampered}[asked.table]
-    return 0 if draw(asked.count or (500 if asked.table == "tampered" else 1000)) else 1
+    draw = {"faults": faults, "valid": valid}[asked.table]
+    return 0 if draw(asked.count or 1000) else 1
 
 
 if __name__ == "__main__":

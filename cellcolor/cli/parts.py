@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +48,16 @@ class FixedJoint(click.ParamType):  # type: ignore[type-arg]
         if not joint or not math.isfinite(at):
             self.fail(f"{value!r} is not JOINT=POSITION, as rail_joint=0.4", param, ctx)
         return joint, at
+
+
+def _once(given: Iterable[tuple[str, float]]) -> dict[str, float]:
+    """The position of each joint, which may be given once."""
+    found: dict[str, float] = {}
+    for joint, position in given:
+        if joint in found:
+            raise InputError(None, "--fix", f"{joint} is given twice")
+        found[joint] = position
+    return found
 
 
 @cellcolor.command()
@@ -174,7 +185,7 @@ def new(
 
     late = "the time limit came first; nothing is written"
     with at_work(part, "beginning", late) as tell:
-        made = begin(part, arm, output, fix=dict(fix), progress=tell, **wanted)
+        made = begin(part, arm, output, fix=_once(fix), progress=tell, **wanted)
     INTERRUPTS.check()
     say(f"wrote {made.scene} and its setup: {made.reachable_share:.0%} of the part can be reached")
     for note in made.notes:

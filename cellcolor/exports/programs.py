@@ -89,14 +89,12 @@ def _lines(planned: PlannedMotion, language: Language, linear: bool) -> Iterator
     assert axes is not None
     step = planned.step_s or (UR_STEP if language.stepped else None)
     found = stretches(planned.trajectory, step)
-    base = axes.base
-    if _is_ur(controller):
-        base = _ur_base(axes)
+    base = _ur_base(axes) if _is_ur(controller) else axes.base
     tool, work_object = controller.frames
     job = Job(
         name="cellcolor_linear" if linear else "cellcolor",
         remarks=_remarks(
-            planned, controller, linear, max((own.beside for own in found), default=0)
+            planned, controller, base, linear, max((own.beside for own in found), default=0)
         ),
         tool=str(tool),
         tip=np.linalg.inv(axes.flange) @ axes.tip,
@@ -129,11 +127,14 @@ def _lines(planned: PlannedMotion, language: Language, linear: bool) -> Iterator
 
 
 def _remarks(
-    planned: PlannedMotion, controller: Controller, linear: bool, beside: float
+    planned: PlannedMotion, controller: Controller, base: Array, linear: bool, beside: float
 ) -> list[str]:
-    """What a reader of the program has to know, whatever its language."""
-    assert planned.axes is not None
-    down = (np.linalg.inv(planned.axes.base)[:3, :3] @ [0.0, 0.0, -1.0]).round(3) + 0.0
+    """What a reader of the program has to know, whatever its language.
+
+    Args:
+        base: (4, 4) pose of the controller's base in the world.
+    """
+    down = (np.linalg.inv(base)[:3, :3] @ [0.0, 0.0, -1.0]).round(3) + 0.0
     remarks = [
         "No parser of the maker has read this program: run it in simulation first.",
         f"In the controller's frame, gravity points along ({down[0]:g}, {down[1]:g}, {down[2]:g}):"

@@ -21,6 +21,7 @@ from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Motion, Setup
 
 _REACHES = 20  # a wing of 10 m is a part; what is larger than this, or as far away, is none
+_FASTEST = 15.0  # m/s; the fastest pick-and-place robots stay below
 _PLAUSIBLE = 0.2  # of the reach: a tool of that radius is a large one
 
 
@@ -82,6 +83,11 @@ def check_motion(motion: Motion, part: Surface, scene: Scene, reach: float) -> N
     _no_larger_than_part(widths, part, scene, reach)
     lengths = {"motion.retract_m": motion.retract_m, "motion.clearance_m": motion.clearance_m}
     _within_reach(lengths, reach)
+    for name in ("speed_m_per_s", "approach_speed_m_per_s", "transfer_speed_m_per_s"):
+        speed = getattr(motion, name)
+        if speed is not None and speed > _FASTEST:
+            message = f"no arm moves its tool that fast: {looks_like_millimeters(speed)}"
+            raise InputError(None, f"motion.{name}", message)
 
 
 def _no_larger_than_part(

@@ -333,3 +333,11 @@ def test_a_tool_of_ones_own(plate: Path, tmp_path: Path) -> None:
     assert not Scene.read(made.scene).setup.constraints.force
     with pytest.raises(InputError, match="tip link"):
         cellcolor.new(plate, ROBOTS / "ur5.urdf", tmp_path / "other", tool=tool)
+
+
+def test_a_joint_stands_in_one_place(
+    plate: Path, on_rail: Path, tmp_path: Path, capsys: Capture
+) -> None:
+    twice = ("--fix", "rail_joint=0", "--fix", "rail_joint=1")
+    assert run("new", plate, on_rail, "-o", tmp_path / "new", *twice) == 2
+    assert "--fix: rail_joint is given twice" in capsys.readouterr().err

@@ -340,7 +340,8 @@ def test_joint_angles_do_not_depend_on_the_mounting(rpy: str) -> None:
         assert np.array_equal(one.joints, other.joints)
     assert np.allclose(found.part, expected.part, atol=1e-6)  # in the base's frame
     roll, pitch, yaw = (float(one) for one in rpy.split())
-    down = pin.rpy.rpyToMatrix(roll, pitch, yaw).T @ [0, 0, -1.0]
+    # The controller's base is base_link turned by half a circle about z.
+    down = np.array([-1, -1, 1]) * (pin.rpy.rpyToMatrix(roll, pitch, yaw).T @ [0, 0, -1.0])
     said = re.findall(
         r"gravity points along \((.*?)\)", exported(turned)["cellcolor.script"].decode()
     )

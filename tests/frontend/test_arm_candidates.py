@@ -1,4 +1,4 @@
-"""Each arm that comes along against Pinocchio and coal, on candidates of a scene of its own.
+"""Each shipped scene and each arm that comes along against Pinocchio and coal, on candidates.
 
 The slow ones are 2,000 candidates each: ``pytest -m slow -n 0 -s tests/frontend -k two_thousand``.
 """
@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import itertools
 
+import coal
 import numpy as np
 import pinocchio as pin
 import pytest
 from independent import CONTACT
 from reasons import Reason
-from shipped import TOP
+from shipped import TOP, shipped
 from world import World
 
 from cellcolor.arrays import Array
@@ -23,12 +24,15 @@ from cellcolor.frontend.arm.kinematics import (
     task_determinant,
     tip_jacobian,
 )
+from cellcolor.frontend.contact.obstacle import CylinderObstacle
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 
 pytestmark = pytest.mark.second
 
+SIX = ["hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square"]
 SCENES = [
+    *SIX,
     "irb120_half_pipe",
     "kr6_half_pipe",
     "tx2_60_half_pipe",
@@ -43,6 +47,8 @@ SCENES = [
 
 def scene_of(name: str) -> Scene:
     """A scene in which an arm hits itself, the ground and the part now and then."""
+    if name in SIX:
+        return shipped(name)
     if name != "cobra600_pipe":
         return Scene.read(TOP / "instances" / "arms" / f"{name}.toml")
     scene = Scene.read(TOP / "instances" / "planar" / f"{name}.toml")
@@ -105,7 +111,12 @@ def check(name: str, vertices: int, count: int) -> None:
         "ground": place.with_ground(joints),
         "robot": place.with_itself(joints),
         "object": place.with_object(joints),
-    }
+    } | ({"obstacle": place.with_obstacles(joints)} if scene.obstacle else {})
+    posts = []
+    for post in scene.obstacle:
+        assert isinstance(post, CylinderObstacle) and post.rpy_rad == (0.0, 0.0, 0.0)
+        pose = coal.Transform3s(np.eye(3), np.array(post.position_m))
+        posts.append((coal.Cylinder(post.radius_m, post.height_m), pose))
     world = World(robot, prepared.surface.vertices, prepared.surface.faces)
     pairs, hits = not_neighbors(world), dict.fromkeys(verdicts, 0)
     for row, q in enumerate(joints):
@@ -114,7 +125,7 @@ def check(name: str, vertices: int, count: int) -> None:
             "ground": world.to_ground(ground.height_m, exempt),
             "robot": world.to_itself(pairs),
             "object": world.to_object(),
-        }
+        } | ({"obstacle": min(world.to_solid(*post) for post in posts)} if posts else {})
         for test, distance in distances.items():
             hits[test] += int(verdicts[test][row])
             # A shell has no depth: what coal calls 0 may be any depth.

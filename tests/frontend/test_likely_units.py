@@ -43,6 +43,8 @@ def refusal(scene: Scene) -> InputError:
         ({"spacing_m": 10.0}, {}, "motion.spacing_m", "0.01 m?"),
         ({"retract_m": 50.0}, {}, "motion.retract_m", "0.05 m?"),
         ({"clearance_m": 5.0, "retract_m": 0.05}, {}, "motion.clearance_m", "0.005 m?"),
+        ({"speed_m_per_s": 250.0}, {}, "motion.speed_m_per_s", "0.25 m?"),
+        ({"approach_speed_m_per_s": 20.0}, {}, "motion.approach_speed_m_per_s", "0.02 m?"),
     ],
 )
 def test_millimeters(

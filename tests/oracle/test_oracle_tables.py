@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import re
 import sys
-from dataclasses import replace
-from typing import Any
 
 import pytest
 from library import INSTANCES
@@ -14,8 +11,6 @@ from planners import largest_set_first
 
 import cellcolor
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.oracle import Proof, ProvenRange
-from cellcolor.oracle.proof_cache import ProofCache
 
 sys.path.append(str(INSTANCES.parent / "benchmarks"))
 import oracle
@@ -47,33 +42,6 @@ def test_faults_and_valid_plans(
     assert not oracle.faults(3) and not oracle.valid(3)
     out = capsys.readouterr().out
     assert out.count("not caught: ") == 3 and out.count("not as it has to be") == 3
-
-
-def test_tampered_proofs(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Each sort once; then a cache that believes its file, which the table has to tell."""
-    few = [surface for surface in oracle.surfaces() if surface[0].name.startswith("voronoi_")][:3]
-    monkeypatch.setattr(oracle, "surfaces", lambda: iter(few))
-    assert oracle.tampered(len(oracle.TAMPERERS))
-    assert f"| all | {len(oracle.TAMPERERS)} | 0 |" in capsys.readouterr().out
-    honest = ProofCache.get
-
-    def believing(cache: ProofCache, surface: LabelledSurface, *rest: Any) -> Proof | None:
-        file = next(cache.folder.glob("*"), None)
-        if file is None:
-            return None
-        proof = honest(cache, surface, *rest)
-        stated = json.loads(file.read_text(encoding="utf-8"))["solutions"][0]
-        bounds = ProvenRange(stated["segments"], stated["segments"])
-        return replace(proof or Proof(bounds), bounds=bounds)
-
-    monkeypatch.setattr(ProofCache, "get", believing)
-    name = "fewer segments stated"
-    monkeypatch.setattr(oracle, "TAMPERERS", {name: oracle.TAMPERERS[name]})
-    assert not oracle.tampered(2)
-    out = capsys.readouterr().out
-    assert f"| {name} | 2 | 2 |" in out and "is the minimum" in out
 
 
 def test_the_pool_has_unreachable_points_cracks_handles_and_several_parts() -> None:

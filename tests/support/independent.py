@@ -1,5 +1,4 @@
-"""The same questions to other people's code: EAIK for inverse kinematics, Pinocchio for the
-rest of the arm, coal (in :mod:`world`) for contacts."""
+"""The same questions to Pinocchio for the arm, and to coal (in :mod:`world`) for contacts."""
 
 from __future__ import annotations
 
@@ -8,7 +7,6 @@ from collections.abc import Sequence
 import coal
 import numpy as np
 import pinocchio as pin
-from eaik.IK_HP import HPRobot
 from reasons import Reason
 from world import PAIRS, World
 
@@ -17,7 +15,6 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.setup import Setup
 
 CONTACT = 0.0005  # m; verdicts may differ nearer to contact than this
-SINGULAR = 1e-6  # m^3; two solutions with a smaller task determinant are about to meet
 Standing = Sequence[tuple[coal.ShapeBase, coal.Transform3s]]
 
 
@@ -32,34 +29,6 @@ def shorter_way(first: Array, second: Array) -> tuple[Array, Array]:
     return np.minimum(step, 0), np.maximum(step, 0)
 
 
-class Eaik:
-    """EAIK's robot from Pinocchio's joint axes at zero."""
-
-    def __init__(self, robot: Robot) -> None:
-        data = robot.model.createData()
-        jacobian = pin.computeJointJacobians(robot.model, data, np.zeros(6))
-        origins = np.array([data.oMi[i].translation for i in range(1, 7)])
-        steps = np.diff(origins, axis=0, prepend=np.zeros((1, 3)))
-        self._robot = HPRobot(jacobian[3:].T, np.vstack([steps, np.zeros((1, 3))]))
-        self._at_zero, self._tip = data.oMi[6].rotation, robot.tip[2, 3]
-
-    def solutions(self, point: Array, direction: Array, roll: float) -> Array:
-        """Joints 1 to 5 of all solutions; any roll about the tool must give the same.
-
-        What EAIK marks as least squares does not reach the pose and is left out.
-        """
-        z = direction
-        x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
-        x /= np.linalg.norm(x)
-        x = np.cos(roll) * x + np.sin(roll) * np.cross(z, x)
-        pose = np.eye(4)
-        pose[:3, :3] = np.column_stack([x, np.cross(z, x), z]) @ self._at_zero.T
-        pose[:3, 3] = point - self._tip * z
-        answer = self._robot.IK(pose)
-        exact = ~np.array(answer.is_LS, dtype=bool)
-        return np.array(answer.Q).reshape(-1, 6)[exact][:, :5]
-
-
 def set_distance(first: Array, second: Array) -> float:
     """How far two sets of joint angles (k, 5) are apart, rad modulo 2 pi; of one size only."""
     if len(first) != len(second):
@@ -68,19 +37,6 @@ def set_distance(first: Array, second: Array) -> float:
         return 0.0
     gap = wrapped(first[:, None] - second[None]).max(axis=2)
     return float(max(gap.min(axis=0).max(), gap.min(axis=1).max()))
-
-
-def regular(robot: Robot, five: Array) -> Array:
-    """Those of some joint angles (k, 5) that are not next to a singularity of the task."""
-    model, data = robot.model, robot.model.createData()
-    tip = model.getFrameId("tool_tip")
-    volumes = []
-    for q in five:
-        jacobian = pin.computeFrameJacobian(
-            model, data, np.append(q, 0.0), tip, pin.ReferenceFrame.LOCAL
-        )
-        volumes.append(abs(np.linalg.det(jacobian[:5, :5])))
-    return five[np.array(volumes, dtype=float) > SINGULAR]
 
 
 def arm_reason(robot: Robot, setup: Setup, q: Array) -> Reason:

@@ -1,20 +1,12 @@
-"""All solutions of poses by Newton's method from many random starts, which knows no closed form.
+"""All solutions of poses: by a family of arms, by ssik, and by Newton's method from many starts.
 
-Five joints put the tip on a point and the tool along a direction. Forward kinematics is a product
-of exponentials: what is known of the arm with all joints at zero is moved by a turn about the axis
-of each joint, as it is at zero (Brockett, Robotic manipulators and the product of exponentials
-formula, 1984). Axes, tip and tool at zero are asked of Pinocchio, and nothing of the product.
-
-Configurations of six-axis arms next to a singular wrist, elbow or shoulder.
-
-Inverse kinematics by ssik, which shares no code with the product: all solutions of a pose.
-
-All solutions of poses, by a family of arms and by solvers that share no code with it.
+Neither of the two shares inverse kinematics with the package. Five joints put the tip on a point
+and the tool along a direction.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,8 +15,7 @@ import pytest
 from independent import set_distance, wrapped
 from scipy.optimize import brentq
 
-from cellcolor.arrays import Array, Index, Mask
-from cellcolor.frontend.arm.calibrated import CALIBRATION
+from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import (
     forward,
@@ -33,7 +24,6 @@ from cellcolor.frontend.arm.kinematics import (
     tip_jacobian,
 )
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.signs import signs_of
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.setup import Setup
 
@@ -42,186 +32,62 @@ STEPS = 50
 DAMPED = 0.05  # times the squared error, added to the normal equations (Levenberg, Marquardt)
 LARGEST = 1.0  # rad; no step moves a joint farther
 DONE, REACHED = 1e-13, 1e-11  # m, and for the unit vector; steps end, and what is a solution
-ONE = 1e-6  # rad; solutions nearer than this are one
-TOGETHER = 20  # poses, whose starts fit into the processor's cache
 
 
-@dataclass(frozen=True)
-class Found:
-    """Solutions of a pose.
-
-    Attributes:
-        joints: (k, 5) rad.
-        hits: (k,) from how many starts each was found.
-    """
-
-    joints: Array
-    hits: Index
-
-
-@dataclass(frozen=True)
-class ManyStarts:
-    """An arm with all joints at zero, in the world.
-
-    Attributes:
-        axes, points: (5, 3) direction of each joint's axis, and a point on it in m.
-        tip, tool: (3,) the tip in m, and the tool's z axis.
-    """
-
-    axes: Array
-    points: Array
-    tip: Array
-    tool: Array
-
-    @classmethod
-    def of(cls, model: pin.Model) -> ManyStarts:
-        """The arm and tool of a model, its tip's frame ``tool_tip``."""
-        data, zero = model.createData(), np.zeros(model.nv)
-        jacobian = pin.computeJointJacobians(model, data, zero)
-        pin.framesForwardKinematics(model, data, zero)
-        tip = data.oMf[model.getFrameId("tool_tip")]
-        points = np.array([data.oMi[joint].translation for joint in range(1, JOINTS + 1)])
-        axes = jacobian[3:, :JOINTS].T.copy()
-        return cls(axes, points, tip.translation.copy(), tip.rotation[:, 2].copy())
-
-    def posed(self, joints: Array) -> tuple[Array, Array, Array]:
-        """Tips and tools (n, 3), and how both move with the joints (n, 6, 5), of joints (n, 5)."""
-        turn, shift = np.tile(np.eye(3), (len(joints), 1, 1)), np.zeros((len(joints), 3))
-        axes, points = np.empty((2, len(joints), JOINTS, 3))
-        for joint, (at_zero, point) in enumerate(zip(self.axes, self.points, strict=True)):
-            axes[:, joint] = turn @ at_zero
-            points[:, joint] = turn @ point + shift
-            x, y, z = at_zero
-            cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-            angle = joints[:, joint, None, None]
-            once, twice = (
-                (turn.reshape(-1, 3) @ each).reshape(-1, 3, 3) for each in (cross, cross @ cross)
-            )
-            turn = turn + np.sin(angle) * once + (1 - np.cos(angle)) * twice
-            shift = points[:, joint] - turn @ point
-        tip, tool = turn @ self.tip + shift, turn @ self.tool
-        moved = np.cross(axes, tip[:, None] - points), np.cross(axes, tool[:, None])
-        return tip, tool, np.concatenate(moved, axis=2).transpose(0, 2, 1)
-
-    def reached(self, joints: Array, points: Array, directions: Array) -> Array:
-        """Where Newton's method gets from some joints (n, 5), NaN where to no solution."""
-        joints, off = joints.copy(), np.empty(len(joints))
-        rows = np.arange(len(joints))
+def from_many_starts(
+    robot: Robot, points: Array, directions: Array, starts: int, seed: int
+) -> list[Array]:
+    """Joints 1 to 5 (s, 5) of all solutions of poses (n, 3) each, from so many random starts."""
+    random, found = np.random.default_rng(seed), []
+    for point, direction in zip(points, directions, strict=True):
+        joints = random.uniform(-np.pi, np.pi, (starts, 6))
+        off, rows = np.empty(starts), np.arange(starts)
         for _ in range(STEPS):
-            tip, tool, jacobian = self.posed(joints[rows])
-            error = np.concatenate([points[rows] - tip, directions[rows] - tool], axis=1)
+            poses = forward(robot, joints[rows])
+            error = np.concatenate([point - poses.tip, direction - poses.tool_axis], axis=1)
             off[rows] = np.abs(error).max(axis=1)
             going = off[rows] > DONE
-            rows, error, jacobian = rows[going], error[going], jacobian[going]
+            linear, angular = tip_jacobian(poses)
+            # The tool's axis moves by the cross product with the angular velocity.
+            turned = np.cross(angular, poses.tool_axis[:, :, None], axisa=1, axisb=1, axisc=1)
+            jacobian = np.concatenate([linear, turned], axis=1)[going, :, :JOINTS]
+            rows, error = rows[going], error[going]
             if not len(rows):
                 break
             across = jacobian.transpose(0, 2, 1)
-            damping = DAMPED * np.einsum("ni,ni->n", error, error) + 1e-15
+            damping = DAMPED * (error**2).sum(axis=1) + 1e-15
             normal = across @ jacobian + damping[:, None, None] * np.eye(JOINTS)
             step = np.linalg.solve(normal, across @ error[:, :, None])[:, :, 0]
             most = np.abs(step).max(axis=1, keepdims=True)
-            joints[rows] += step * np.minimum(1.0, LARGEST / np.maximum(most, 1e-30))
-        joints[off > REACHED] = np.nan
-        return joints
-
-    def solutions(
-        self,
-        points: Array,
-        directions: Array,
-        starts: int,
-        seed: int,
-        progress: Callable[[int], None] = lambda _: None,
-    ) -> list[Found]:
-        """All solutions of poses (n, 3) each, from so many random starts.
-
-        Args:
-            progress: told how many poses are done.
-        """
-        random, found = np.random.default_rng(seed), []
-        for first in range(0, len(points), TOGETHER):
-            rows = np.arange(first, min(first + TOGETHER, len(points)))
-            every = np.repeat(rows, starts)
-            begin = random.uniform(-np.pi, np.pi, (len(every), JOINTS))
-            ends = self.reached(begin, points[every], directions[every])
-            found += [each_once(own) for own in ends.reshape(len(rows), starts, JOINTS)]
-            progress(len(found))
-        return found
+            joints[rows, :JOINTS] += step * np.minimum(1.0, LARGEST / np.maximum(most, 1e-30))
+        found.append(_once(joints[off < REACHED, :JOINTS]))
+    return found
 
 
-def each_once(ends: Array) -> Found:
-    """Joints (s, 5), NaN for none, with equal ones counted."""
-    left, joints, hits = ends[~np.isnan(ends[:, 0])], [], []
-    while len(left):
-        same = wrapped(left - left[0]).max(axis=1) < ONE
-        joints.append(left[0])
-        hits.append(int(same.sum()))
-        left = left[~same]
-    return Found(np.array(joints).reshape(-1, JOINTS), np.array(hits, dtype=np.int64))
+KINDS = {"wrist": 4, "elbow": 2, "shoulder": 1}  # the joint that leads there
 
 
-def estimated_missing(hits: Index) -> float:
-    """How many solutions no start has found, at least, by how often the others were.
+def near_singular(robot: Robot, kind: str, off: float, count: int) -> Array:
+    """Configurations (count, 6) that are ``off`` rad in one joint from where the sign changes.
 
-    From those found once and twice (Chao, Nonparametric estimation of the number of classes in a
-    population, 1984; the form without bias).
+    That is the sign of the task determinant.
     """
-    once, twice = np.count_nonzero(hits == 1), np.count_nonzero(hits == 2)
-    return once * (once - 1) / (2 * (twice + 1))
-
-
-KINDS = {"wrist": (4, 2), "elbow": (2, 1), "shoulder": (1, 0)}  # joint that leads there, factor
-BESIDE = (
-    0.05  # rad from where a factor vanishes; the determinant of a calibrated arm does so between
-)
-
-
-def near_singular(robot: Robot, reach: float, kind: str, off: float, count: int) -> Array:
-    """Configurations (count, 6) that are ``off`` rad in one joint from a singularity.
-
-    Of a calibrated arm the factors vanish beside its singularities only, where the task determinant
-    changes its sign.
-
-    Args:
-        robot: an arm whose branches signs tell apart.
-        reach: of the arm, m.
-        kind: one of ``KINDS``.
-    """
-    exact = signs_of(robot, reach, 1e-6)
-    signs = exact or signs_of(robot, reach, 2 * CALIBRATION)
-    assert signs is not None
-    joint, number = KINDS[kind]
+    joint, found = KINDS[kind], []
 
     def determinant(angle: float, row: Array) -> float:
-        turned = np.array(row)
-        turned[joint] = angle
-        poses = forward(robot, turned[None])
+        poses = forward(robot, np.where(np.arange(6) == joint, angle, row)[None])
         return float(signed_task_determinant(*tip_jacobian(poses), poses.tool_axis)[0])
 
-    def factor(angle: float, row: Array) -> float:
-        turned = np.array(row)
-        turned[joint] = angle
-        factors = signs.factors(forward(robot, turned[None]))[0]
-        # The elbow's factor changes its sign with the shoulder's as well.
-        return float(factors[number] * (np.sign(factors[0]) if number == 1 else 1.0))
-
-    rows, found = np.random.default_rng(29).uniform(-np.pi, np.pi, (20 * count, 6)), []
-    for row in rows:
-        turns = np.linspace(-3.1, 3.0, 20)
-        values = np.array([factor(turn, row) for turn in turns])
+    turns = np.linspace(-3.1, 3.0, 20)
+    for row in np.random.default_rng(29).uniform(-np.pi, np.pi, (20 * count, 6)):
+        values = np.array([determinant(turn, row) for turn in turns])
         crossed = np.flatnonzero(values[1:] * values[:-1] < 0)
         if len(crossed):
             low, high = turns[crossed[0]], turns[crossed[0] + 1]
-            zero = brentq(factor, low, high, args=(row,), xtol=1e-14)
-            if exact is None:
-                low, high = zero - BESIDE, zero + BESIDE
-                if determinant(low, row) * determinant(high, row) >= 0:
-                    continue  # another factor changes its sign as well
-                zero = brentq(determinant, low, high, args=(row,), xtol=1e-14)
-            row[joint] = zero + off
+            row[joint] = brentq(determinant, low, high, args=(row,), xtol=1e-14) + off
             found.append(row)
         if len(found) == count:
             break
-    assert len(found) == count
     return np.array(found)
 
 

@@ -8,6 +8,7 @@ one surface. trimesh reads the other formats.
 from __future__ import annotations
 
 import io
+import math
 import re
 from array import array
 from collections.abc import Iterator
@@ -96,7 +97,8 @@ def read_mesh(file: Path, deadline: Deadline = NEVER) -> tuple[Array, Faces]:
         OutOfTime: the deadline came first; not looked at while another library reads the file.
     """
     if not _is_file(file):
-        raise InputError(str(file), None, "no such mesh file")
+        there = "is a directory" if file.is_dir() else "no such mesh file"
+        raise InputError(str(file), None, there)
     if file.suffix.lower() not in (".stl", ".obj", ".ply"):
         raise InputError(str(file), None, "not a mesh format known here (STL, OBJ, PLY)")
     if file.stat().st_size > _MOST_BYTES:
@@ -106,12 +108,18 @@ def read_mesh(file: Path, deadline: Deadline = NEVER) -> tuple[Array, Faces]:
         return read_obj(file, deadline)
     _check_container(file)
     try:
-        mesh = trimesh.load_mesh(file, process=False, maintain_order=True)
+        with np.errstate(all="ignore"):  # what is not finite is refused below
+            mesh = trimesh.load_mesh(file, process=False, maintain_order=True)
         vertices = np.array(mesh.vertices, dtype=np.float64).reshape(-1, 3)
         faces = np.array(mesh.faces, dtype=np.int64).reshape(-1, 3)
     except Exception as error:  # trimesh's readers raise whatever their parsers ran into
         raise InputError(str(file), None, f"trimesh cannot read it: {error!r}") from error
     deadline.check()
+    bad = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
+    if len(bad):
+        stl = file.suffix.lower() == ".stl"  # whose faces have three vertices of their own
+        place = f"faces[{bad[0] // 3}]" if stl else f"vertices[{bad[0]}]"
+        raise InputError(str(file), place, "has a coordinate that is not a finite number")
     if file.suffix.lower() == ".ply" and len(faces) > mesh.metadata["_ply_raw"]["face"]["length"]:
         with naming(file):
             faces = _ply_faces(mesh)
@@ -175,6 +183,8 @@ def read_obj(file: Path, deadline: Deadline) -> tuple[Array, Faces]:
                     points.extend(map(float, words[:3]))
                     if len(points) % 3:
                         raise ValueError("a vertex has three coordinates")
+                    if not all(map(math.isfinite, points[-3:])):
+                        raise ValueError("a coordinate is not a finite number")
                 elif kind == "f":
                     face = [_index(word, len(points) // 3) for word in words]
                     if len(face) < 3:

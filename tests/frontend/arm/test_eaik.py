@@ -1,4 +1,4 @@
-"""Any arm that EAIK solves: solutions against ssik and forward kinematics, names, refusals."""
+"""Any arm that EAIK solves: solutions by forward kinematics, names, refusals."""
 
 from __future__ import annotations
 
@@ -9,10 +9,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from independent import set_distance, wrapped
-from solution_sets import KINDS, near_singular
+from independent import wrapped
 
-from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.eaik import EaikKinematics
 from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
@@ -26,7 +24,6 @@ pytestmark = pytest.mark.second
 LOCKED = 0.4
 NAMED = ("kr6", "irb120", "puma560", "ur5e")
 NAMELESS = ("passing", "cuspidal")
-REGULAR = 1e-5  # of reach^3; nearer to a singularity two solutions are about to meet
 
 
 def files(**keys: object) -> RobotFiles:
@@ -36,81 +33,6 @@ def files(**keys: object) -> RobotFiles:
 
 ROBOTS = {name: dh_arms.robot(dh_arms.urdf(name)) for name in (*NAMED, *NAMELESS)}
 FAMILIES = {name: EaikKinematics(robot, files()) for name, robot in ROBOTS.items()}
-
-
-def solved(name: str, points: Array, directions: Array) -> list[Array]:
-    """Joints 1 to 5 of all solutions of each pose."""
-    found = FAMILIES[name].solve(points, directions)
-    return [each[~np.isnan(each[:, 0]), :5] for each in found]
-
-
-def determinants(name: str, five: Array) -> Array:
-    poses = forward(ROBOTS[name], np.column_stack([five, np.zeros(len(five))]))
-    return task_determinant(*tip_jacobian(poses), poses.tool_axis) / FAMILIES[name].reach ** 3
-
-
-def same_sets(name: str, q: Array, regular_only: bool = False) -> int:
-    """Compare all solutions of the poses of some configurations; how many there were."""
-    from solution_sets import Ssik  # only here: ssik may be missing
-
-    theirs_of, random = Ssik(ROBOTS[name]), np.random.default_rng(3)
-    poses, count = forward(ROBOTS[name], q), 0
-    for ours, point, direction in zip(
-        solved(name, poses.tip, poses.tool_axis), poses.tip, poses.tool_axis, strict=True
-    ):
-        theirs = theirs_of.solutions(point, direction, random.uniform(0, 6))
-        if regular_only:
-            ours, theirs = (each[determinants(name, each) > REGULAR] for each in (ours, theirs))
-        assert set_distance(ours, theirs) < 1e-5
-        count += len(ours)
-    return count
-
-
-@pytest.mark.parametrize("name", (*NAMED, *NAMELESS))
-def test_same_solutions_as_ssik(name: str) -> None:
-    pytest.importorskip("ssik")
-    q = np.random.default_rng(5).uniform(-np.pi, np.pi, (60, 6))
-    assert same_sets(name, q) >= 240
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", (*NAMED, *NAMELESS))
-def test_solutions_of_ssik_for_five_thousand_poses(name: str) -> None:
-    """None of ssik's is missing; now and then it has fewer, of arms whose signs have no names.
-
-    What is more here reaches the pose, as the test of all solutions holds.
-    """
-    pytest.importorskip("ssik")
-    from solution_sets import Ssik
-
-    q = np.random.default_rng(6).uniform(-np.pi, np.pi, (5000, 6))
-    poses, theirs_of = forward(ROBOTS[name], q), Ssik(ROBOTS[name])
-    more = 0
-    for ours, point, direction in zip(
-        solved(name, poses.tip, poses.tool_axis), poses.tip, poses.tool_axis, strict=True
-    ):
-        theirs = theirs_of.solutions(point, direction, 1.0)
-        gap = wrapped(theirs[:, None] - ours[None]).max(axis=2)
-        assert gap.min(axis=1).max(initial=0) < 1e-5
-        more += len(ours) > len(theirs)
-    assert more <= (0 if name in NAMED else 5)
-
-
-@pytest.mark.parametrize("off", [1e-2, 1e-4, 1e-7, 0.0])
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("name", ["kr6", pytest.param("puma560", marks=pytest.mark.slow)])
-def test_no_solution_is_lost_next_to_a_singularity(name: str, kind: str, off: float) -> None:
-    """Compared are those with a determinant above a share of reach^3; the own one always."""
-    pytest.importorskip("ssik")
-    q = near_singular(ROBOTS[name], FAMILIES[name].reach, kind, off, 10)
-    same_sets(name, q, regular_only=True)
-    poses = forward(ROBOTS[name], q)
-    for own, ours in zip(q, solved(name, poses.tip, poses.tool_axis), strict=True):
-        if off >= 1e-4:
-            # Half of the digits are lost where two solutions meet.
-            assert wrapped(ours - own[:5]).max(axis=1).min(initial=9) < 1e-9 / off
-        # At the singularity itself rounding may say that there is nothing; no crash.
-        assert len(ours) <= 8
 
 
 @pytest.mark.parametrize("name", (*NAMED, *NAMELESS))

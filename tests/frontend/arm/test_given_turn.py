@@ -7,6 +7,7 @@ import math
 import bent_tools
 import calibrated
 import numpy as np
+import pinocchio as pin
 import pytest
 from bent_tools import ACROSS, BENT, STRAIGHT, tip_frame, tip_frames
 from hypothesis import given
@@ -138,46 +139,20 @@ def test_calibrated_arms_have_whole_solutions_too(family: str) -> None:
             assert np.abs(off).max() < 3e-9
 
 
-def same_as_ssik(family: str, arm: str, tool: str, q: Array) -> int:
-    """Compare all solutions of the poses of some configurations; how many there were."""
+@pytest.mark.parametrize("count", [40, pytest.param(5000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("tool", TOOLS)
+@pytest.mark.parametrize(("family", "arm"), [*ARMS, ("eaik", "irb120")])
+def test_the_same_whole_solutions_as_ssik(family: str, arm: str, tool: str, count: int) -> None:
+    pytest.importorskip("ssik")
     from solution_sets import Ssik  # only here: ssik may be missing
 
     robot, kinematics = made(family, arm, tool)
-    poses, theirs_of, count = tip_frames(robot.model, q), Ssik(robot), 0
+    q = np.random.default_rng(9).uniform(-np.pi, np.pi, (count, 6))
+    poses, theirs_of, solutions = tip_frames(robot.model, q), Ssik(robot), 0
     for ours, *pose in zip(found(kinematics.solve_pose(*poses)), *poses, strict=True):
         assert set_distance(ours, theirs_of.whole_solutions(*pose)) < 1e-5
-        count += len(ours)
-    return count
-
-
-@pytest.mark.parametrize("tool", TOOLS)
-@pytest.mark.parametrize("arm", ["kr6", "puma560", "irb120"])
-def test_the_same_whole_solutions_as_ssik(arm: str, tool: str) -> None:
-    pytest.importorskip("ssik")
-    q = np.random.default_rng(9).uniform(-np.pi, np.pi, (40, 6))
-    assert same_as_ssik("eaik", arm, tool, q) >= 150
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("family", "arm"), [*ARMS, ("eaik", "irb120")])
-def test_the_same_whole_solutions_as_ssik_of_five_thousand_poses(family: str, arm: str) -> None:
-    pytest.importorskip("ssik")
-    q = np.random.default_rng(6).uniform(-np.pi, np.pi, (5000, 6))
-    assert same_as_ssik(family, arm, "bent", q) >= 20_000
-
-
-@pytest.mark.parametrize("tool", TOOLS)
-def test_the_closed_form_of_ur_finds_what_eaik_finds(tool: str) -> None:
-    robot, ur = made("ur", "ur5e", tool)
-    _, eaik = made("eaik", "ur5e", tool)
-    q = np.random.default_rng(12).uniform(-np.pi, np.pi, (200, 6))
-    poses = tip_frames(robot.model, q)
-    pairs = zip(found(ur.solve_pose(*poses)), found(eaik.solve_pose(*poses)), strict=True)
-    counts = []
-    for ours, theirs in pairs:
-        assert set_distance(ours, theirs) < 1e-5
-        counts.append(len(ours))
-    assert {2, 4, 8} <= set(counts)
+        solutions += len(ours)
+    assert solutions >= 3.7 * count
 
 
 def test_only_one_branch_is_the_same_as_all_of_them() -> None:
@@ -215,26 +190,19 @@ def test_a_branch_keeps_its_name_where_the_determinant_is_not_zero(family: str, 
 
 @pytest.mark.parametrize("tool", TOOLS)
 def test_measures_are_those_of_all_six_joints(tool: str) -> None:
-    """Against differences of Pinocchio's poses: three rows in m, three of the turn in the world."""
+    """Volumes of what Pinocchio's Jacobian spans."""
     robot = bent_tools.robot("kr6", TOOLS[tool])
     q = np.random.default_rng(17).uniform(-np.pi, np.pi, (40, 6))
     poses = forward(robot, q)
     linear, angular = tip_jacobian(poses)
     determinants = task_determinant(linear, angular, poses.tool_axis, GIVEN_TURN)
     volumes = manipulability(linear, GIVEN_TURN)
-    step = 1e-6
+    data, frame = robot.model.createData(), robot.model.getFrameId("tool_tip")
     for row, joints in enumerate(q):
-        columns = []
-        for shift in step * np.eye(6):
-            after, before = (tip_frame(robot.model, joints + s) for s in (shift, -shift))
-            turn = after.rotation @ before.rotation.T
-            about = [turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]
-            moved = (after.translation - before.translation) / (2 * step)
-            columns.append([*moved, *(np.array(about) / (4 * step))])
-        jacobian = np.array(columns).T
-        assert determinants[row] == pytest.approx(abs(np.linalg.det(jacobian)), abs=1e-7)
+        jacobian = pin.computeFrameJacobian(robot.model, data, joints, frame)
+        assert determinants[row] == pytest.approx(abs(np.linalg.det(jacobian)), abs=1e-12)
         sizes = np.linalg.svd(jacobian[:3], compute_uv=False)
-        assert volumes[row] == pytest.approx(sizes.prod(), abs=1e-7)
+        assert volumes[row] == pytest.approx(sizes.prod(), abs=1e-12)
 
 
 def test_with_the_tool_on_the_axis_both_measures_are_those_of_the_free_turn() -> None:

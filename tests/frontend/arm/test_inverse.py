@@ -1,4 +1,4 @@
-"""Closed-form inverse kinematics against EAIK and against forward kinematics."""
+"""Closed-form inverse kinematics against forward kinematics; ``test_solution_sets`` has ssik."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from independent import Eaik, regular, set_distance, wrapped
+from independent import wrapped
 from shipped import ROBOTS
 
 from cellcolor.arrays import Array
@@ -19,57 +19,6 @@ from cellcolor.frontend.arm.ur import BRANCHES, UrGeometry, solve_inverse, ur_ge
 from examples import examples
 
 LOCKED = 0.4
-
-
-@pytest.fixture(scope="module")
-def eaik(robot: Robot) -> Eaik:
-    return Eaik(robot)
-
-
-@pytest.mark.parametrize("reachable", [True, False])
-def test_same_solution_sets_as_eaik(
-    eaik: Eaik, robot: Robot, geometry: UrGeometry, reachable: bool
-) -> None:
-    random = np.random.default_rng(11)
-    if reachable:
-        poses = forward(robot, random.uniform(-np.pi, np.pi, (400, 6)))
-        points, directions = poses.tip, poses.tool_axis
-    else:
-        points = random.uniform(-1.1, 1.1, (400, 3))
-        directions = random.normal(size=(400, 3))
-        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    found = solve_inverse(geometry, points, directions, LOCKED)
-    counts = []
-    for row in range(len(points)):
-        ours = found[row][~np.isnan(found[row, :, 0])][:, :5]
-        theirs = eaik.solutions(points[row], directions[row], random.uniform(0, 6))
-        counts.append(len(ours))
-        assert set_distance(ours, theirs) < 1e-6
-    # The sample has to hold full, partial and (where it may) empty sets.
-    assert {2, 4, 8} <= set(counts) and (reachable or 0 in counts)
-
-
-@pytest.mark.parametrize("off", [1e-3, 1e-5, 1e-7, 0.0])
-@pytest.mark.parametrize("joint", [2, 4])
-def test_same_regular_solutions_at_straight_elbow_and_aligned_wrist(
-    eaik: Eaik, robot: Robot, geometry: UrGeometry, joint: int, off: float
-) -> None:
-    """Where two solutions meet, rounding says how many there are: only the others compare."""
-    random = np.random.default_rng(29)
-    left_out = compared = 0
-    for _ in range(200):
-        q = random.uniform(-np.pi, np.pi, (1, 6))
-        q[0, joint] = off
-        poses = forward(robot, q)
-        point, direction = poses.tip, poses.tool_axis
-        found = solve_inverse(geometry, point, direction, LOCKED)[0]
-        ours = found[~np.isnan(found[:, 0])][:, :5]
-        theirs = eaik.solutions(point[0], direction[0], random.uniform(0, 6))
-        assert set_distance(regular(robot, ours), regular(robot, theirs)) < 1e-6
-        compared += len(regular(robot, ours))
-        left_out += len(ours) - len(regular(robot, ours))
-    assert compared > 400
-    assert off > 1e-4 or left_out > 200
 
 
 @given(

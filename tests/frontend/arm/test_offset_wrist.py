@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from independent import wrapped
 from shipped import ROBOTS
-from solution_sets import Arm, ManyStarts, estimated_missing
+from solution_sets import Arm, from_many_starts
 
 import cellcolor
 from cellcolor.arrays import Array
@@ -40,25 +40,14 @@ def arm(name: str) -> Arm:
     return BUILT[name]
 
 
-def same_as_many_starts(name: str, poses: int, starts: int) -> None:
-    one, q = arm(name), np.random.default_rng(7).uniform(-np.pi, np.pi, (poses, 6))
-    other = ManyStarts.of(one.robot.model)
-    found = other.solutions(*other.posed(q[:, :5])[:2], starts, 8)
-    compared = one.held_against([each.joints for each in found], q)
-    assert compared.different == 0 and compared.solutions > 6 * poses
-    hits = np.concatenate([each.hits[one.is_regular(each.joints)] for each in found])
-    assert estimated_missing(hits) < 0.5
-
-
+@pytest.mark.parametrize("count", [20, pytest.param(1000, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", dh_arms.OFFSET_WRISTS)
-def test_the_same_solutions_as_from_many_starts(name: str) -> None:
-    same_as_many_starts(name, 20, 200)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", dh_arms.OFFSET_WRISTS)
-def test_the_same_solutions_as_from_many_starts_at_a_thousand_poses(name: str) -> None:
-    same_as_many_starts(name, 1000, 300)
+def test_the_same_solutions_as_from_many_starts(name: str, count: int) -> None:
+    one, q = arm(name), np.random.default_rng(7).uniform(-np.pi, np.pi, (count, 6))
+    poses = forward(one.robot, q)
+    found = from_many_starts(one.robot, poses.tip, poses.tool_axis, 250, 8)
+    compared = one.held_against(found, q)
+    assert compared.different == 0 and compared.solutions > 6 * count
 
 
 @given(

@@ -1,11 +1,13 @@
-"""OBJ files of all habits are one mesh."""
+"""OBJ files of all habits are one mesh; what no mesh file may have."""
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from dirty import BOX, OUTWARD, obj
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -140,3 +142,31 @@ def test_a_fold_is_named_by_a_face_of_the_file(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"no normal at \(0.5, 0, 0\) m") as caught:
         load_mesh(file, 1.0, max_edge_m=0.6)
     assert caught.value.field in ("faces[0]", "faces[1]")
+
+
+@pytest.mark.parametrize(
+    ("suffix", "place"),
+    [(".obj", "line 4"), (".stl", "faces[1]"), (".ply", "vertices[3]")],
+)
+@pytest.mark.parametrize("wrong", ["nan", "inf"])
+def test_a_coordinate_that_is_no_number(
+    suffix: str, place: str, wrong: str, tmp_path: Path
+) -> None:
+    """The fourth vertex, which only the second face has."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, float(wrong), 0]])
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    file = tmp_path / f"part{suffix}"
+    if suffix == ".obj":
+        lines = ["v " + " ".join(map(str, point)) for point in points.tolist()]
+        file.write_text("\n".join([*lines, "f 1 2 3", "f 1 3 4"]))
+    else:
+        trimesh.Trimesh(points, faces, process=False).export(file)
+    with warnings.catch_warnings(), pytest.raises(InputError, match="not a finite") as caught:
+        warnings.simplefilter("error")
+        read_mesh(file)
+    assert (caught.value.file, caught.value.field) == (str(file), place)
+
+
+def test_a_directory_is_no_mesh(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="is a directory"):
+        read_mesh(tmp_path)
