@@ -105,6 +105,7 @@ class Stops(click.ParamType):  # type: ignore[type-arg]
     name = "stops"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Split at the sign of equality and the colons."""
         if isinstance(value, tuple):
             return value
         joint, _, spaced = value.partition("=")
