@@ -63,6 +63,7 @@ nitpick_ignore_regex = [
         r"py:class",
         r"(.*\.)?(T|Kind|_\w+|FieldInfo|TypeForm|ConfigDict|NoneType|Handler|DataclassInstance)",
     ),
+    (r"py:class", r"Outside|CoverChoice"),  # literals
     (
         r"py:class",
         r"Ge|Gt|Le|Lt|MinLen|[\d.e-]+|dict\[(str|int)|tuple\[~pathlib\.Path|list\[list\[tuple\[int",

@@ -87,6 +87,7 @@ class Numbers(click.ParamType):  # type: ignore[type-arg]
         self.said, self.count, self.word = said, count, word
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """A tuple of numbers, or the word."""
         if isinstance(value, tuple) or value == self.word:
             return value
         try:
@@ -104,6 +105,7 @@ class Stops(click.ParamType):  # type: ignore[type-arg]
     name = "stops"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Split at the sign of equality and the colons."""
         if isinstance(value, tuple):
             return value
         joint, _, spaced = value.partition("=")

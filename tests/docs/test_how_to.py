@@ -60,9 +60,13 @@ def test_a_solver(tmp_path: Path) -> None:
 
     raced = run(race, ROOT, site)
     assert raced.returncode == 0, raced.stderr
-    (row,) = [line.split() for line in raced.stdout.splitlines() if line.split()[:1] == ["ring"]]
-    # Cells, live darts, segments, seconds of CP-SAT, which proves the minimum, and of this one.
-    assert (row[3], row[5:]) == ("2", ["not", "proved"])
+    # CP-SAT proves the minimum, this one proves nothing.
+    table = [
+        "| Minima proved, of runs | cp-sat | random |",
+        "|---|--:|--:|",
+        "| paper | 1/1 | 0/1 |",
+    ]
+    assert "\n".join(table) in raced.stdout
 
 
 def test_a_picture(clone: Path) -> None:
@@ -92,26 +96,9 @@ def test_a_bound(clone: Path) -> None:
     assert (done.returncode, done.stdout) == (0, printed.text), done.stderr
 
 
-@pytest.mark.slow
-def test_a_family(clone: Path) -> None:
-    chains, top, line, *_ = found = blocks("extend", "A family of instances")
-    for block in (chains, top, line):
-        follow(block, clone)
-    (bench,) = commands(found)
-    done = run(bench, clone, clone)
-    assert done.returncode == 0, done.stderr
-    assert re.search(r"(\d+) runs, \1 with a proved minimum", done.stdout), done.stdout
-    script = (
-        "from cellcolor.lab.families import SMALL\n"
-        "made = [SMALL['chains'](seed) for seed in (0, 0, 1)]\n"
-        "print(made[0].sha256 == made[1].sha256 != made[2].sha256)\n"
-    )
-    assert run([sys.executable, "-c", script], clone, clone).stdout == "True\n"
-
-
 @pytest.mark.parametrize(
     ("guide", "heading"),
-    [("add-a-solver", ""), ("extend", "A picture"), ("extend", "A family of instances")],
+    [("add-a-solver", ""), ("extend", "A picture")],
 )
 def test_one_screen(guide: str, heading: str) -> None:
     assert len(section(guide, heading).splitlines()) <= 80

@@ -1,4 +1,4 @@
-"""Every random family by name, and who draws from it (docs/how-to/extend.md).
+"""Every random family by name, and who draws from it.
 
 Each is a function of a seed.
 """
