@@ -147,8 +147,10 @@ def check(
     assert 0.01 < expected.mean() < 0.97
     different = np.flatnonzero(found != expected)
     assert not len(different), (len(different), joints[different[:3]])
-    # Distances of flat cylinders are rough there.
-    assert (by_fcl != found).sum() <= (len(joints) // 100 if world.margin else 0)
+    # Its distances are rough: beside what touches, it never errs by more than 0.6 mm.
+    rough = 0.0006 if world.margin else 0.0
+    surely = Contacts([(one, other, margin - rough) for one, other, margin in pairs], robot)(joints)
+    assert not (surely & ~by_fcl).any() and not (by_fcl & ~found).any()
 
 
 @pytest.mark.parametrize("count", [250, pytest.param(2000, marks=pytest.mark.slow)])
