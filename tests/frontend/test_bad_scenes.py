@@ -54,7 +54,7 @@ CASES = {
     "zero-area face": (mesh(FLAT, [[0, 8, 4], [0, 4, 8]]), MESH, "vertices"),
     "vertex without faces": (mesh(FLAT), MESH, "vertices[8]"),
     "no faces": (mesh(faces=[]), MESH, None),
-    "coordinate not finite": (mesh(np.where(BOX > 0, np.inf, 0)), MESH, "vertices["),
+    "coordinate not finite": (mesh(np.where(BOX > 0, np.inf, 0)), MESH, "line 2"),
     "object in the base": ((SCENE, r"\[0.465, -0.15, -0.04\]", "[0.0, 0.0, 0.0]"), SCENE,
                            "placement"),
     "obstacle without size": ((SCENE, r"$", '\n[[obstacle]]\nkind = "box"\n'), SCENE,

@@ -197,7 +197,7 @@ def test_closed_mesh_is_accepted(tmp_path: Path) -> None:
         (np.vstack([TETRA, TETRA[:1]]), [*OUTWARD[1:], [4, 2, 1]], r"vertices\[4\]", "vertex 0"),
         (np.vstack([TETRA[:3], [[2, 0, 0]]]), [[0, 1, 2], [1, 0, 3]], r"faces\[1\]", "no area"),
         (TETRA[:3], [[0, 1, 2], [0, 2, 1]], r"vertices\[0\]", "no normal"),
-        (np.where(TETRA == 1, np.nan, TETRA), OUTWARD, "vertices", "finite"),
+        (np.where(TETRA == 1, np.nan, TETRA), OUTWARD, "line 2", "finite"),
         (TETRA[:3], [], "faces", "there are none"),
     ],
 )  # fmt: skip
