@@ -17,6 +17,9 @@ import cellcolor
 
 ALLOWED = {
     ("files/validation.py", "plain"): "how deeply the annotations of a dataclass nest",
+    ("data/value.py", "_plain"): "how deeply the annotations of a dataclass nest",
+    ("data/value.py", "members_of"): "likewise",
+    ("data/value.py", "every_member_of"): "likewise",
     ("frontend/arm/link_mesh.py", "_below"): "the folders looked into, _DEEPEST",
     ("questions/explaining.py", "_cutting"): "how often a list of things can be halved",
     ("frontend/tables.py", "_settled"): "how deeply TOML nests, which its reader limits",

@@ -185,9 +185,9 @@ def grid(ground: HalfSpace, points: Array) -> SpaceLines:
     x, y = (np.linspace(low[axis], high[axis], _GRID) for axis in (0, 1))
     x, y = np.meshgrid(x, y, indexing="ij")
     nx, ny, nz = ground.normal
-    grid = np.stack([x, y, (ground.offset_m - nx * x - ny * y) / nz], axis=2)
-    along_x = np.stack([grid[:-1], grid[1:]], axis=2).reshape(-1, 2, 3)
-    along_y = np.stack([grid[:, :-1], grid[:, 1:]], axis=2).reshape(-1, 2, 3)
+    knots = np.stack([x, y, (ground.offset_m - nx * x - ny * y) / nz], axis=2)
+    along_x = np.stack([knots[:-1], knots[1:]], axis=2).reshape(-1, 2, 3)
+    along_y = np.stack([knots[:, :-1], knots[:, 1:]], axis=2).reshape(-1, 2, 3)
     return SpaceLines("ground", GROUND, np.concatenate([along_x, along_y]))
 
 

@@ -233,7 +233,7 @@ class TestPlaces:
             out = done.stdout
         assert done.returncode == 0
         assert Solution.from_document(json.loads(out)).segments == 2
-        assert b"lift-offs" in done.stderr
+        assert b"1 lift-off, optimal" in done.stderr
 
     def test_what_goes_to_a_pipe_names_no_surface(self) -> None:
         command = [sys.executable, "-m", "cellcolor", "build", str(RING_SURFACE)]

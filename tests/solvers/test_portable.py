@@ -149,9 +149,9 @@ def test_cells_with_several_loops_are_written(name: str, tmp_path: Path) -> None
 def test_seams_with_far_too_many_strands_are_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Each of many seams may need twice as many strands as the one before."""
+    """Each of many seams may need as many strands as half of the cell's darts."""
     file, target = tmp_path / "loops.json", tmp_path / "loops.opb"
-    file.write_text(hub_with_loops(0, 30, 2, 2).to_json())
+    file.write_text(hub_with_loops(0, 150, 2, 2).to_json())
     assert run("export", file, "-o", target) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "the seams need" in line and "strands" in line

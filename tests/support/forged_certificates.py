@@ -116,6 +116,8 @@ def _originals(
             part = {"value": bound.value, "cells": certificate["cells"], "conflicts": []}
             certificate = {"parts": [part]}
         certificate = {"left_out": [], **json.loads(json.dumps(certificate))}
+        for part in certificate["parts"]:
+            part.setdefault("conflicts", [])
         proved = Bound("conflicts", bound.value, "surface", certificate)
         yield Original(name, instance, proved, surface)
 
