@@ -97,9 +97,13 @@ def changed(scene: Scene, what: Relaxation) -> Scene:
             kept_share = max(1 - percent / 100, 0) * getattr(setup.thresholds, name)
             return scene.with_setup(setup.varied(thresholds={name: kept_share}))
         case JointRange(joint=joint, amount=wider):
-            limit = 1e6 if wider == np.inf else 2.0 + wider
-            assert joint == "wrist_1_joint" or limit == 1e6
-            text = with_range(urdf_of(scene, "arm_urdf"), joint, limit)
+            assert joint == "wrist_1_joint" or wider == np.inf
+            text = urdf_of(scene, "arm_urdf")
+            if wider == np.inf:
+                text = text.replace(f'"{joint}" type="revolute"', f'"{joint}" type="continuous"')
+                assert "continuous" in text
+            else:
+                text = with_range(text, joint, 2.0 + wider)
             return scene.with_setup(setup.varied(robot={"arm_urdf": text}))
         case Distance(margin=key):
             return scene.with_setup(setup.varied(margins={key: 0}))

@@ -341,7 +341,7 @@ def _tree(
         kind = joint.get("type", "")
         if kind in _MOVING:
             if kind != CONTINUOUS:
-                _limits(name, joint, kind)
+                kind = _limits(name, joint, kind)
             _axis(name, joint)
             kinds[name] = kind
         elif kind != "fixed":
@@ -398,7 +398,8 @@ def _weightless(
                 yield error
 
 
-def _limits(name: str, joint: ET.Element, kind: str) -> None:
+def _limits(name: str, joint: ET.Element, kind: str) -> str:
+    """Check a joint's limits; its kind, which becomes continuous where they mean none."""
     field = f"joint[{name}].limit"
     limit = joint.find("limit")
     lower = _number(field, limit, "lower")
@@ -412,6 +413,13 @@ def _limits(name: str, joint: ET.Element, kind: str) -> None:
     elif beyond_turns(most, 2) and abs(most) <= _MOST_DEGREES:
         message = f"{looks_like_degrees(most)} (a joint that turns endlessly is 'continuous')"
         raise InputError(None, field, message)
+    elif abs(most) > _MOST_DEGREES:
+        if min(-lower, upper) <= _MOST_DEGREES:
+            message = f"{most:g} is as good as none, and the other end has one: give both or none"
+            raise InputError(None, field, message)
+        joint.set("type", CONTINUOUS)
+        return CONTINUOUS
+    return kind
 
 
 def _effort(name: str, joint: ET.Element) -> InputError | None:

@@ -251,13 +251,18 @@ def test_degrees_are_refused(
     assert caught.value.field == field
 
 
-@pytest.mark.parametrize("limit", [2 * np.pi * 2, 999999.0])
-def test_two_turns_and_no_limit_at_all_are_radians(
-    limit: float, written: Callable[..., Path]
-) -> None:
-    """The second as of vendors who write a number that nothing reaches."""
-    robot = load(written(ARM, r'upper="6.28\d*"', f'upper="{limit!r}"'))
-    assert robot.upper[0] == limit
+def test_two_turns_are_radians(written: Callable[..., Path]) -> None:
+    robot = load(written(ARM, r'upper="6.28\d*"', f'upper="{4 * np.pi!r}"'))
+    assert robot.upper[0] == 4 * np.pi
+
+
+def test_limits_that_nothing_reaches_are_none(written: Callable[..., Path]) -> None:
+    """As of vendors who write 999999; at one end alone they are no range."""
+    both = r'lower="-6.28\d*" upper="6.28\d*"'
+    robot = load(written(ARM, both, 'lower="-999999" upper="999999"'))
+    assert (robot.lower[0], robot.upper[0]) == (-np.inf, np.inf)
+    with pytest.raises(InputError, match="999999 is as good as none"):
+        load(written(ARM, r'upper="6.28\d*"', 'upper="999999"'))
 
 
 @pytest.mark.parametrize(
