@@ -25,7 +25,7 @@ from cellcolor.cli.options import (
     ranges,
     shared,
 )
-from cellcolor.cli.progress import at_work, workers_for
+from cellcolor.cli.progress import at_work
 from cellcolor.cli.terminal import complain, drawn_to, print_json, say, say_lines
 from cellcolor.data.prices import MOST_CM2, MOST_PRICE
 
@@ -194,7 +194,7 @@ def explain(scene: Path, at: tuple[float, ...] | None, as_json: bool, **search: 
     to="table",
 )
 @json_option("Print a JSON object for each placement.")
-@shared("jobs", "cluster", "seed", "time_limit")
+@shared("jobs", "seed", "time_limit")
 def place(
     scene: Path, tolerance: str | None, picture: Path | None, as_json: bool, **search: Any
 ) -> Exit:
@@ -209,8 +209,6 @@ def place(
     if picture is None:
         del search["tiles"]
     with drawn_to(picture, [scene], as_json) as draw:
-        if (cluster := search.pop("cluster")) is not None:
-            search["jobs"] = workers_for(search["jobs"], cluster)
         with at_work(scene, "placing", _UNSOLVED) as tell:
             found = placements_of(with_tolerance(scene, tolerance), progress=tell, **search)
         moved = {"moved": "base"} if found.base else {}

@@ -16,7 +16,6 @@ from cellcolor.deadline import Deadline
 from cellcolor.errors import CellcolorError, InputError
 from cellcolor.lab.runs.table import TableFile
 from cellcolor.lab.workers import Task, Workers, as_they_end
-from cellcolor.processes import Limits
 from cellcolor.questions.placements import PlacedMinimum, PlacementQuestion, Pose
 from cellcolor.version import __version__
 
@@ -173,8 +172,8 @@ class AskedPlacements(AbstractContextManager["AskedPlacements"]):
         lost = list(parts)
         for attempt in range(1, _ATTEMPTS + 1):
             left = self._deadline.left
-            limits = Limits(min(left, _ALL_DAY) + _ENDING)
-            tasks = [(part, Task(minima_at, (scene, part, left, *how), limits)) for part in lost]
+            most = min(left, _ALL_DAY) + _ENDING
+            tasks = [(part, Task(minima_at, (scene, part, left, *how), most)) for part in lost]
             lost = []
             for part, ended in as_they_end(workers, tasks):
                 if ended.end in ("done", "timeout", "stopped"):

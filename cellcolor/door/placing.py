@@ -14,7 +14,7 @@ from cellcolor.door.placements_asked import AskedPlacements
 from cellcolor.door.subject import scene_or_file
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
-from cellcolor.lab.workers import LocalWorkers, Workers
+from cellcolor.lab.workers import Workers
 from cellcolor.questions.placements import PlacementQuestion, Placements
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def place(
     if not isinstance(jobs, int):
         workers = jobs
     elif jobs > 1:
-        workers = LocalWorkers(jobs)
+        workers = Workers(jobs)
     file = None if table is None else path_of(table)
     with (
         AskedPlacements(own, file, asked, deadline, report) as placements,
