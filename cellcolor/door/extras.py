@@ -25,11 +25,10 @@ _EXTRAS = {
     "trimesh": "frontend",
     "gpytoolbox": "parts",
     "potpourri3d": "motion",
-    "mcap": "motion",
 }
 DISTRIBUTIONS = (
     *("click", "networkx", "numpy", "ortools", "pydantic", "rich"),
-    *("pin", "python-fcl", "libigl", "scipy", "trimesh", "EAIK", "potpourri3d", "mcap"),
+    *("pin", "python-fcl", "libigl", "scipy", "trimesh", "EAIK", "potpourri3d"),
     *("gpytoolbox", "matplotlib"),
     *("clingo", "highspy", "pychoco", "pyscipopt", "python-sat", "dask", "distributed"),
 )
