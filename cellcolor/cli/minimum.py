@@ -110,7 +110,7 @@ def build(source: Path, output: Path) -> Exit:
     "Corridors that may cross an edge, in search space surface.  [default: 2]",
     metavar="K",
 )
-@shared("cover", "required", "left_alone", "tolerance")
+@shared("cover", "left_alone", "tolerance")
 @click.option("--all", "every", is_flag=True, help="List all optimal schemes.")
 @option(
     "--warm-start",
@@ -148,9 +148,6 @@ def solve(
         ),
         "--picture is of a single file": picture is not None and len(files) > 1,
         "--warm-start takes a single file": "start" in asked and len(files) > 1,
-        "--required needs --cover: without it everything has to be": (
-            "required" in asked and "cover" not in asked
-        ),
     }
     for message, is_wrong in wrong.items():
         if is_wrong:

@@ -201,9 +201,6 @@ _SHARED = {
         SHARE,
         "Cover only this share of the area, 0 to 1, with the fewest lift-offs that do.",
     ),
-    "required": option(
-        "--required", None, f"What has to be covered: {_PLACE}", metavar="PLACE", callback=_place
-    ),
     "left_alone": option(
         "--left-alone",
         None,
