@@ -105,10 +105,7 @@ class Result(Drawn):
             return ""
         shares = shares_of(self.instance, self.solution)
         rows = [("segment", "color", "cells", BASES[shares.of])]
-        rows += [
-            (str(row.segment), row.color, row.cells, row.percent)
-            for row in segment_rows(self.instance, self.solution, shares)
-        ]
+        rows += segment_rows(self.instance, self.solution, shares)
         lines = []
         for number, row in enumerate(rows):
             kind = "td" if number else "th"

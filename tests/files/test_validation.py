@@ -114,16 +114,6 @@ def test_colors_of_vertices_out_of_order_are_one_cell() -> None:
     assert [cell.colors for cell in decompose(mixed).cells] == [(0, 1)]
 
 
-def test_arrays_are_the_surface_s_own() -> None:
-    mesh = drawn("aa aa", {"a": [0]})
-    points = mesh.vertices.copy()
-    made = LabelledSurface(mesh.name, mesh.colors, points, mesh.faces, mesh.vertex_colors)
-    points[0, 0] = np.nan
-    assert np.isfinite(made.vertices).all()
-    with pytest.raises(ValueError, match="read-only"):
-        made.vertices[0, 0] = 1.0
-
-
 def test_graphs_and_solutions_are_those_of_the_file() -> None:
     one, two = np.int64(1), np.int16(2)
     made: Any = Instance(

@@ -41,21 +41,6 @@ def common(rows: Sequence[Row]) -> list[Row]:
     return [row for own in problems.values() if {r.contestant for r in own} == names for row in own]
 
 
-def strongest(rows: Sequence[Row], *, rivals: bool) -> str | None:
-    """The contestant that proves most minima, then with the lower PAR2; None if there is none.
-
-    Args:
-        rivals: among the others than ``cp-sat``, its variants left out; else among ``cp-sat`` with
-            any number of workers.
-    """
-    strength = {
-        name: (sum(row.solved for row in own), -par2(own))
-        for name, own in of_contestants(rows)
-        if (not _solver(name).startswith(DEFAULT) if rivals else _solver(name) == DEFAULT)
-    }
-    return max(strength, key=strength.__getitem__, default=None)
-
-
 def _solver(contestant: str) -> str:
     return contestant.partition("@")[0]
 

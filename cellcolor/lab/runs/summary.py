@@ -14,7 +14,6 @@ from cellcolor.lab.runs.statistics import (
     median_seconds,
     of_contestants,
     par2,
-    strongest,
 )
 
 _OPEN_SHOWN = 40
@@ -35,7 +34,7 @@ def summary_of_runs(rows: Sequence[Row]) -> Iterator[str]:
         yield from _by_family(own, "Minima proved, of runs", _solved)
         yield from ("", *_by_family(own, "Seconds, median", _median))
         yield from ("", *_by_family(own, "PAR2, seconds", lambda runs: _number(par2(runs))))
-        yield from ("", *_where_others_win(own), "", *_ends(own), "", *_open(own))
+        yield from ("", *_ends(own), "", *_open(own))
 
 
 def markdown_table(head: Sequence[str], body: Iterable[Sequence[str]]) -> Iterator[str]:
@@ -106,25 +105,6 @@ def _median(runs: Sequence[Row]) -> str:
 
 def _number(seconds: float) -> str:
     return f"{seconds:.3f}" if seconds < 1 else f"{seconds:.1f}"
-
-
-def _where_others_win(rows: Sequence[Row]) -> Iterator[str]:
-    """Families in which another solver proves more minima than the best of ours."""
-    ours = strongest(rows, rivals=False)
-    if ours is None:
-        return
-    won = []
-    for family, own in by(rows, lambda row: row.family).items():
-        runs = by(own, lambda row: row.contestant)
-        proved = {name: sum(row.solved for row in runs[name]) for name in runs}
-        better = [name for name in proved if proved[name] > proved.get(ours, 0)]
-        won += [f"{family}: {name} {proved[name]}, {ours} {proved.get(ours, 0)}" for name in better]
-    if won:
-        yield f"More minima than {ours}:"
-        yield ""
-        yield from (f"- {line}" for line in won)
-    else:
-        yield f"In no family does any solver prove more minima than {ours}."
 
 
 def _ends(rows: Sequence[Row]) -> Iterator[str]:
