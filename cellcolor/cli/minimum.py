@@ -24,7 +24,6 @@ from cellcolor.cli.options import (
     shared,
 )
 from cellcolor.cli.terminal import apart_from, complain, say, say_lines
-from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.writing import (
@@ -111,7 +110,7 @@ def build(source: Path, output: Path) -> Exit:
     "Corridors that may cross an edge, in search space surface.  [default: 2]",
     metavar="K",
 )
-@shared("cover", "required", "left_alone", "tolerance")
+@shared("cover", "left_alone", "tolerance")
 @click.option("--all", "every", is_flag=True, help="List all optimal schemes.")
 @option(
     "--warm-start",
@@ -149,9 +148,6 @@ def solve(
         ),
         "--picture is of a single file": picture is not None and len(files) > 1,
         "--warm-start takes a single file": "start" in asked and len(files) > 1,
-        "--required needs --cover: without it everything has to be": (
-            "required" in asked and "cover" not in asked
-        ),
     }
     for message, is_wrong in wrong.items():
         if is_wrong:
@@ -227,7 +223,7 @@ def check(seconds: float, **given: Any) -> Exit:
 @cellcolor.command()
 @click.argument(
     "files",
-    metavar="FILE [SOLUTION.json|PLAN.json] | FOLDER…",
+    metavar="FILE [SOLUTION.json|PLAN.json]",
     nargs=-1,
     required=True,
     type=INPUT,
@@ -253,15 +249,8 @@ def show(
 ) -> Exit:
     """Draw an instance, a labelled surface or a scene, by cell unless an option says otherwise.
 
-    With a solution after what was solved, or a plan on its surface: by segment. Of folders that
-    cellcolor plan has written: their reports on one page.
+    With a solution after what was solved, or a plan on its surface: by segment.
     """
-    if all(file.is_dir() for file in files):
-        from cellcolor.door.plan_files import compare_plans
-
-        compare_plans(files, output)
-        say(f"wrote {output}: {count(len(files), 'plan')}")
-        return Exit.DONE
     if len(files) > 2:
         raise click.UsageError("give one file to show, or one with its solution or plan")
     implied = {

@@ -191,7 +191,7 @@ def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
 @click.argument("scene", metavar="SCENE.toml", type=INPUT)
 @output_option("FOLDER", "Folder for all files; it is created if it does not exist.", required=True)
 @_PATTERN
-@shared("cover", "required", "left_alone", "tolerance")
+@shared("cover", "left_alone", "tolerance")
 @option(
     "--ask",
     None,
@@ -217,9 +217,6 @@ def plan(
     for other programs, and report.html to look at. The options below --time-limit replace keys of
     the setup's table [motion].
     """
-    if wanted["required"] is not None and wanted["cover"] is None:
-        raise click.UsageError("--required needs --cover: without it everything has to be")
-
     from cellcolor.cli.inputs import with_tolerance
     from cellcolor.door.plan_files import check_folder
     from cellcolor.door.planned import NothingCovered, PlanOutOfTime

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import check_solution
 from cellcolor.data.plan import Plan
-from cellcolor.data.plot import Curve, Plot
 from cellcolor.data.solution import Solution
 from cellcolor.door.extras import extras_for
 from cellcolor.door.result import Result
@@ -303,28 +302,23 @@ def draw_search(result: Result, path: str | PathLike[str]) -> None:
     """
 
     def render(form: str) -> bytes:
-        from cellcolor.pictures.plots import render_plot
+        from cellcolor.pictures.plots import render_search
 
-        return render_plot(plot_of_gap(result), form)
+        title = f"{result.instance.name}: {result.solution.status}"
+        return render_search(title, curves_of_gap(result), form)
 
     save_plot(path, render)
 
 
-def plot_of_gap(result: Result) -> Plot:
-    """Best division and bound over the seconds of a search, and each kind of bound at its end."""
-    solution, gap = result.solution, result.gap
+def curves_of_gap(result: Result) -> dict[str, list[tuple[float, int]]]:
+    """Seconds of a search with the best division and bound, and each kind of bound at its end."""
+    gap = result.gap
     end = gap[-1].seconds if gap else 0.0
-    best = tuple((step.seconds, step.segments) for step in gap if step.segments is not None)
-    curves = [
-        Curve(f"{bound.kind}: {bound.value}", ((0.0, bound.value), (end, bound.value)))
-        for bound in solution.bounds or ()
-    ]
-    curves += [
-        Curve("lower bound", tuple((step.seconds, step.lower_bound) for step in gap)),
-        Curve("best division", best),
-    ]
-    title = f"{result.instance.name}: {result.solution.status}"
-    return Plot(title, "seconds of the search", "segments", tuple(curves), joined="steps")
+    bounds = result.solution.bounds or ()
+    return {f"{own.kind}: {own.value}": [(0.0, own.value), (end, own.value)] for own in bounds} | {
+        "lower bound": [(step.seconds, step.lower_bound) for step in gap],
+        "best division": [(s.seconds, s.segments) for s in gap if s.segments is not None],
+    }
 
 
 def save_plot(path: str | PathLike[str], render: Callable[[str], bytes]) -> None:

@@ -19,7 +19,7 @@ from cellcolor.door.plan_files import SIDE, SURFACE, save
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
-from cellcolor.exports.registry import PROGRAM, exported, programs_of, why_not
+from cellcolor.exports.registry import exported, programs_of, why_no_program
 from cellcolor.files.paths import path_of
 from cellcolor.painting.paint import Painted
 
@@ -192,30 +192,24 @@ class PlannedScene(UnfinishedPlan):
     @property
     def lacking(self) -> tuple[str, ...]:
         """What was asked for, or is usual, and is not there, a line each with the reason."""
-        refused = why_not(self._motion())
-        return (*self.unanswered, *(f"{name}: not written: {why}" for name, why in refused.items()))
+        why = why_no_program(self._motion())
+        no_program = () if why is None else (f"program for a controller: not written: {why}",)
+        return (*self.unanswered, *no_program)
 
     @property
     def complete(self) -> bool:
         """Whether all that was asked for is there: answers, and the program of a controller."""
         asked = self.built.prepared.setup.controller is not None
-        return not self.unanswered and not (asked and PROGRAM in why_not(self._motion()))
+        return not self.unanswered and not (asked and why_no_program(self._motion()))
 
     def _motion(self, export_step_s: float | None = None) -> PlannedMotion:
         """What exports are made of."""
         from cellcolor.exports.interface import PlannedMotion
-        from cellcolor.pictures.surface_pictures import by_segment
 
-        painted, trajectory = self.painted, self.trajectory
-        fills = tuple(own.rgb for own in by_segment(painted).classes if own.number is not None)
         prepared = self.built.prepared
         task = prepared.setup.task
         return PlannedMotion(
-            surface=painted.surface,
-            segment_of=painted.segment_of,
-            fills=fills,
-            paths=self.paths,
-            trajectory=trajectory,
+            trajectory=self.trajectory,
             axes=axes_of(prepared),
             step_s=export_step_s,
             # A tool that stands off presses on nothing.

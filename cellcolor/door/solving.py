@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Unpack
 
 from cellcolor.checker.division import check_solution
 from cellcolor.data.instance import Instance
+from cellcolor.data.prices import check_share
 from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.decomposition import decomposition_of
-from cellcolor.door.asked import SearchOfAPart, Work, begun, options_of, wanted_of
+from cellcolor.door.asked import SearchOfAPart, Work, begun, options_of
 from cellcolor.door.leaving_out import rest_of
 from cellcolor.door.result import GapStep, Result
 from cellcolor.door.subject import (
@@ -96,17 +97,17 @@ def solve(
         start: a solution to start from, or its file.
         progress: called with the segments of the best division so far, None before there is one,
             and the lower bound.
-        **asked: time limit, workers and seed (:class:`~cellcolor.door.asked.Search`); and what has
-            to be covered, which is everything if it is left out:
-            :class:`~cellcolor.door.leaving_out.Wanted`.
+        **asked: :class:`~cellcolor.door.asked.SearchOfAPart`.
 
     Raises:
         InputError: what is to be solved, or an option, cannot be used.
         OutOfTime: the time limit came before any division was found.
     """
-    wanted, options = wanted_of(asked), options_of(asked, SearchOfAPart)
+    options = options_of(asked, SearchOfAPart)
+    check_share("cover", asked.get("cover"))
     subject = open_subject(source, options.deadline)
-    subject, left_out, share = rest_of(subject, wanted, options)
+    of = asked.get("cover"), asked.get("left_alone")
+    subject, left_out, share = rest_of(subject, *of, options)
     instance = subject.graph(options.deadline)
     options = replace(
         options,

@@ -48,13 +48,6 @@ def spread(ranges: Ranges, start: Pose, count: int, seed: int) -> list[Pose]:
     return _scaled(ranges, start, _sobol(len(ranges), count, seed))
 
 
-def middles(ranges: Ranges, start: Pose, tiles: int) -> list[Pose]:
-    """The middles of the tiles of a map, row by row: the first range varies fastest."""
-    steps = (np.arange(tiles) + 0.5) / tiles
-    grid = np.meshgrid(*[steps] * len(ranges), indexing="ij")
-    return _scaled(ranges, start, np.column_stack([part.ravel() for part in grid[::-1]]))
-
-
 def around(ranges: Ranges, best: Pose, share: float, count: int, seed: int) -> list[Pose]:
     """Placements in a box around one, whose sides are a share of the ranges."""
     near = {}

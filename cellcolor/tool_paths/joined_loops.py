@@ -62,7 +62,8 @@ class _Loop:
         a, b = self.place[one], self.place[other]
         if (self.along[b] - self.along[a]) % self.length > self.length / 2:
             a, b = b, a
-        return self.row[a : b + 1] if a <= b else self.row[a:] + self.row[: b + 1]
+        row: list[int] = self.row
+        return row[a : b + 1] if a <= b else row[a:] + row[: b + 1]
 
 
 def join_loops(mesh: Triangles, rows: list[Index], gap: float, deadline: Deadline) -> list[int]:
@@ -80,7 +81,7 @@ def join_loops(mesh: Triangles, rows: list[Index], gap: float, deadline: Deadlin
     ways = ways_from(mesh.graph(off_border(mesh, gap / 2)), np.concatenate(rows))
     doors = _doors(mesh, ways, loop_of[ways.source])
     deadline.check()
-    graph = nx.MultiGraph()
+    graph: nx.MultiGraph[int] = nx.MultiGraph()
     for loop in loops:
         nx.add_cycle(graph, loop.row)
     # Ends of bridges, and all that is left out: no door leaves out what another one needs.

@@ -7,7 +7,7 @@ import pytest
 from commands import run
 
 import cellcolor
-from cellcolor.door.drawing import plot_of_gap
+from cellcolor.door.drawing import curves_of_gap
 
 
 @pytest.fixture(scope="module", params=["half_pipe_8000_clean", "hub_60", "hub_loops_2x6"])
@@ -26,12 +26,11 @@ def test_the_gap_only_closes(result: cellcolor.Result) -> None:
 
 
 def test_the_picture_has_a_line_for_the_division_and_each_bound(result: cellcolor.Result) -> None:
-    *kinds, bound, best = plot_of_gap(result).curves
-    assert best.points[-1][1] == result.segments
-    assert bound.points[-1][1] == result.solution.lower_bound
-    assert [curve.label.split(":")[0] for curve in kinds] == [
-        own.kind for own in result.solution.bounds or ()
-    ]
+    *kinds, bound, best = (curves := curves_of_gap(result))
+    assert curves[best][-1][1] == result.segments
+    assert curves[bound][-1][1] == result.solution.lower_bound
+    bounds = result.solution.bounds or ()
+    assert [label.split(":")[0] for label in kinds] == [own.kind for own in bounds]
 
 
 def test_the_command_draws_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
