@@ -13,8 +13,7 @@ from cellcolor.door.asked import Work, begun
 from cellcolor.door.extras import extras_for
 from cellcolor.door.subject import scene_or_file
 from cellcolor.errors import CellcolorError, InputError
-from cellcolor.lab.workers import LocalWorkers, Task, Workers, as_they_end
-from cellcolor.processes import Limits
+from cellcolor.lab.workers import Task, Workers, as_they_end
 from cellcolor.questions.placements import PlacedMinimum, PlacementQuestion, Placements, Pose
 
 if TYPE_CHECKING:
@@ -62,7 +61,7 @@ def place(
     if not isinstance(jobs, int):
         workers = jobs
     elif jobs > 1:
-        workers = LocalWorkers(jobs)
+        workers = Workers(jobs)
     minima = _Minima(asked, deadline, report)
     with workers as others:
         alone, many = partial(minima, None), partial(minima, others)
@@ -141,8 +140,8 @@ class _Minima:
         lost = list(parts)
         for attempt in range(1, _ATTEMPTS + 1):
             left = self._deadline.left
-            limits = Limits(min(left, _ALL_DAY) + _ENDING)
-            tasks = [(part, Task(minima_at, (scene, part, left, *how), limits)) for part in lost]
+            most = min(left, _ALL_DAY) + _ENDING
+            tasks = [(part, Task(minima_at, (scene, part, left, *how), most)) for part in lost]
             lost = []
             for part, ended in as_they_end(workers, tasks):
                 if ended.end in ("done", "timeout", "stopped"):
