@@ -14,13 +14,13 @@ from hypothesis import strategies as st
 from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError
 from cellcolor.lab.runs.row import Row, compared, disagreements
-from cellcolor.lab.runs.statistics import (
+from cellcolor.lab.runs.summary import (
     common,
     contestants_of,
     median_seconds,
     par2,
+    summary_of_runs,
 )
-from cellcolor.lab.runs.summary import summary_of_runs
 from cellcolor.lab.runs.sweep import (
     families_like,
     family_names,
