@@ -20,8 +20,6 @@ from cellcolor.frontend.arm.shape import Shape
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.prepared import PreparedScene, named
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
-from cellcolor.frontend.reach.validity import Judge
-from cellcolor.frontend.reach.validity_tests import Workplace
 
 
 @dataclass(frozen=True)
@@ -77,7 +75,7 @@ class _WholeTest(Relaxation):
     reasons: ClassVar[frozenset[str]]
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
-        return _remade(prepared, prepared.workplace, self.reasons)
+        return replace(prepared, left_out=prepared.left_out | self.reasons)
 
 
 @dataclass(frozen=True)
@@ -106,7 +104,7 @@ class JointRange(Relaxation):
         lower = np.where(here, robot.lower - self.amount, robot.lower)
         upper = np.where(here, robot.upper + self.amount, robot.upper)
         arm = replace(prepared.arm, robot=replace(robot, lower=lower, upper=upper))
-        return _remade(prepared, replace(prepared.workplace, arm=arm))
+        return named(replace(prepared, arm=arm))
 
 
 @dataclass(frozen=True)
@@ -129,7 +127,7 @@ class LinkContact(Relaxation):
             if self.pair and {robot.bodies[i].link, robot.bodies[j].link} != set(self.pair)
         )
         arm = replace(prepared.arm, robot=replace(robot, tested_pairs=pairs))
-        return _remade(prepared, replace(prepared.workplace, arm=arm))
+        return named(replace(prepared, arm=arm))
 
     def parts(self, prepared: PreparedScene) -> tuple[LinkContact, ...]:
         """Each pair of links of a scene."""
@@ -183,7 +181,7 @@ class Threshold(Relaxation):
         kept = max(1 - self.amount / 100, 0.0)
         lowered = {self.threshold: kept * getattr(least, self.threshold)}
         arm = replace(prepared.arm, conditioning=replace(least, **lowered))
-        return _remade(prepared, replace(prepared.workplace, arm=arm))
+        return named(replace(prepared, arm=arm))
 
 
 @dataclass(frozen=True)
@@ -200,10 +198,11 @@ class GroundPlane(Relaxation):
         return f"ground lower by {1e3 * amount:.3g} mm"
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
-        place, ground = prepared.workplace, None
-        if np.isfinite(self.amount) and place.ground is not None:
-            ground = replace(place.ground, offset_m=place.ground.offset_m - self.amount)
-        return _remade(prepared, _around(replace(place, ground=ground)))
+        ground = prepared.ground
+        if ground is not None:
+            lower = replace(ground, offset_m=ground.offset_m - self.amount)
+            ground = lower if np.isfinite(self.amount) else None
+        return _amid(replace(prepared, ground=ground))
 
 
 @dataclass(frozen=True)
@@ -234,7 +233,7 @@ class ObstacleBody(Relaxation):
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
         """Without it, or with it moved straight away from the middle of the part's surface."""
-        place, scene, here = prepared.workplace, prepared.scene, self.number - 1
+        scene, here = prepared.scene, self.number - 1
         moved: tuple[Shape, ...] = ()
         if self.amount < np.inf:
             obstacle = scene.obstacle[here]
@@ -247,8 +246,8 @@ class ObstacleBody(Relaxation):
             position = tuple((np.array(obstacle.position_m) + step).tolist())
             there = obstacle.model_copy(update={"position_m": position})
             moved = (there.solid(scene.folder),)
-        left = (*place.obstacles[:here], *moved, *place.obstacles[here + 1 :])
-        return _remade(prepared, _around(replace(place, obstacles=left)))
+        left = (*prepared.obstacles[:here], *moved, *prepared.obstacles[here + 1 :])
+        return _amid(replace(prepared, obstacles=left))
 
 
 @dataclass(frozen=True)
@@ -281,7 +280,7 @@ class ToolBody(Relaxation):
             ),
         )
         arm = replace(prepared.arm, robot=slim)
-        return _remade(prepared, replace(prepared.workplace, arm=arm))
+        return named(replace(prepared, arm=arm))
 
 
 @dataclass(frozen=True)
@@ -307,8 +306,8 @@ class ToolLength(Relaxation):
         """With a larger stand-off, which is where the tip link ends."""
         longer = prepared.setup.task.stand_off_m + self.amount
         setup = prepared.setup.varied(task={"stand_off_m": longer})
-        place = _around(replace(prepared.workplace, arm=prepare_arm(setup)))
-        return _remade(replace(prepared, scene=prepared.scene.with_setup(setup)), place)
+        scene = prepared.scene.with_setup(setup)
+        return _amid(replace(prepared, scene=scene, arm=prepare_arm(setup)))
 
 
 @dataclass(frozen=True)
@@ -329,7 +328,7 @@ class Distance(Relaxation):
     def applied(self, prepared: PreparedScene) -> PreparedScene:
         setup = prepared.arm.setup.varied(margins={self.margin: 0.0})
         arm = replace(prepared.arm, setup=setup)
-        return _remade(prepared, replace(prepared.workplace, arm=arm))
+        return named(replace(prepared, arm=arm))
 
 
 @dataclass(frozen=True)
@@ -349,31 +348,23 @@ class AddedTest(_WholeTest):
         return f"test of {self.test}"
 
 
-def _remade(
-    prepared: PreparedScene, place: Workplace, left_out: frozenset[str] = frozenset()
-) -> PreparedScene:
-    """The scene with another workplace, and with fewer tests."""
-    left_out |= prepared.judge.left_out
-    judge = Judge(place, prepared.scene.validity_test, left_out)
-    return named(replace(prepared, workplace=place, judge=judge))
-
-
-def _around(place: Workplace) -> Workplace:
-    """The workplace, the room at the tool's tip told what stands around."""
-    tip = Tip(place.robot, place.tip.body.radius, list(place.obstacles), place.ground)
-    return replace(place, tip=tip)
+def _amid(prepared: PreparedScene) -> PreparedScene:
+    """The scene, the room at the tool's tip told what stands around."""
+    radius = prepared.tip.body.radius
+    tip = Tip(prepared.robot, radius, prepared.obstacles, prepared.ground)
+    return named(replace(prepared, tip=tip))
 
 
 def relaxations_of(prepared: PreparedScene) -> tuple[Relaxation, ...]:
     """All that can be taken out of a scene, one by one; all contacts between links are one."""
-    place, robot, on = prepared.workplace, prepared.robot, prepared.setup.constraints
+    robot, on = prepared.robot, prepared.setup.constraints
     found: list[Relaxation] = []
     if on.collision:
         found += [
             ObstacleBody(number, str(getattr(one, "kind", type(one).__name__)))
             for number, one in enumerate(prepared.scene.obstacle, 1)
         ]
-        found += [] if place.ground is None else [GroundPlane()]
+        found += [] if prepared.ground is None else [GroundPlane()]
         found.append(PartBody())
         found += [ToolBody(robot.tool_links)] if robot.tool_links else []
         limited = np.isfinite(robot.lower) | np.isfinite(robot.upper)

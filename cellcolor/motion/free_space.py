@@ -48,7 +48,7 @@ class FreeSpace:
                 smaller one.
             leaving: see the class.
         """
-        place, robot = prepared.workplace, prepared.robot
+        place, robot = prepared, prepared.robot
         self._place, self._on = place, prepared.setup.constraints.collision
         self.space = joint_space(prepared)
         self._leaving, margins, room = leaving, prepared.setup.margins, share * clearance

@@ -23,7 +23,6 @@ from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.between import remains_valid
 from cellcolor.frontend.reach.continuity import link
 from cellcolor.frontend.reach.tracking import Tracker
-from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.trajectory_checker.dense import poses_of
 from cellcolor.trajectory_checker.fine_mesh import refined
 from cellcolor.trajectory_checker.repeated import _near
@@ -143,13 +142,7 @@ def test_points_between_vertices(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_links(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = prepared("ur5e_wok")
     surface, count = scene.surface, len(scene.surface.vertices)
-    verdicts = scene.judge(solutions("ur5e_wok", count)[2].reshape(-1, 6))
-    candidates = Candidates(
-        verdicts.configurations.reshape(count, -1, 6),
-        verdicts.reasons.reshape(count, -1),
-        verdicts.determinants.reshape(count, -1),
-        scene.judge.reason_names,
-    )
+    candidates = scene.judge(solutions("ur5e_wok", count)[2])
     edges = surface.edges()
     step = partial(link, surface, edges, candidates, scene.arm.measure, None, probe=scene.arm.probe)
     whole = step()

@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 from shipped import SCENES, shipped
 
 import cellcolor
-from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER
-from cellcolor.frontend import BuildResult, Scene, build_surface, links
-from cellcolor.frontend.judging_again import judged_asking_less, judged_asking_more
+from cellcolor.frontend import BuildResult, Scene, build_surface
+from cellcolor.frontend.build import build_prepared
+from cellcolor.frontend.judging_again import built_asking_less, built_asking_more
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach import validity
 from cellcolor.frontend.relaxing import (
@@ -38,10 +38,8 @@ from cellcolor.frontend.relaxing import (
     without,
 )
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages, judged
 from cellcolor.questions import explaining
 from cellcolor.questions.explanation import Explanation, RelaxedMinimum
-from cellcolor.questions.placing import coarse_scene
 from examples import examples
 
 pytestmark = pytest.mark.second
@@ -131,13 +129,13 @@ def from_scratch(
         return build_surface(scene)
 
 
-def same_answers(found: Stages, other: Stages) -> bool:
+def same_answers(found: BuildResult, other: BuildResult) -> bool:
     """Whether two builds of one surface have the same colors, cracks and reasons."""
     return (
-        np.array_equal(found.candidates.valid, other.candidates.valid)
-        and np.array_equal(found.links.linked, other.links.linked)
-        and np.array_equal(found.cleaned.coloring.node_color, other.cleaned.coloring.node_color)
-        and found.cleaned.cracks == other.cleaned.cracks
+        np.array_equal(found.verdicts.valid, other.verdicts.valid)
+        and np.array_equal(found.all_colors.linked, other.all_colors.linked)
+        and np.array_equal(found.coloring.node_color, other.coloring.node_color)
+        and found.coloring.cracks == other.coloring.cracks
     )
 
 
@@ -152,17 +150,17 @@ def test_each_row_is_that_of_the_scene_with_the_thing_changed(
         scene = scene.varied(ground=None)
     prepared = prepare(scene)
     clock = StageClock(NEVER, None)
-    before = judged(prepared, clock)
+    before = build_prepared(prepared, clock)
     changing = 0
     for one in (*relaxations_of(prepared), ToolLength().by(0.03)):
         if isinstance(one, ToolBody) and (scene.ground is not None or scene.obstacle):
             continue
         if one.reasons is None:
-            found = judged(without(prepared, [one]), clock)
+            found = build_prepared(without(prepared, [one]), clock)
         else:
-            found = judged_asking_less(without(prepared, [one]), before, one.reasons, clock)
-        assert same_answers(found, from_scratch(scene, [one], monkeypatch).stages), one
-        changing += not np.array_equal(found.candidates.valid, before.candidates.valid)
+            found = built_asking_less(without(prepared, [one]), before, one.reasons, clock)
+        assert same_answers(found, from_scratch(scene, [one], monkeypatch)), one
+        changing += not np.array_equal(found.verdicts.valid, before.verdicts.valid)
     assert changing >= 3
 
 
@@ -184,33 +182,10 @@ def test_what_is_known_changes_nothing_of_what_is_found(
     what = list({type(things[i % len(things)]): things[i % len(things)] for i in chosen}.values())
     reasons = frozenset[str]().union(*(one.reasons or () for one in what))
     relaxed = without(prepared, what)
-    found = judged_asking_less(relaxed, judged(prepared, clock), reasons, clock)
-    anew = judged(relaxed, clock)
+    found = built_asking_less(relaxed, build_prepared(prepared, clock), reasons, clock)
+    anew = build_prepared(relaxed, clock)
     assert same_answers(found, anew)
-    assert np.array_equal(found.candidates.reasons, anew.candidates.reasons)
-
-
-def test_a_broken_link_says_a_test_that_breaks_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is broken with this test alone, and not asked about again where another is relaxed."""
-    bracket = Scene.read(SCENES.parent / "parts" / "bracket.toml")
-    prepared, clock = prepare(coarse_scene(bracket, 100, NEVER)), StageClock(NEVER, None)
-    stages = judged(prepared, clock)
-    reasons = stages.links.reasons
-    broken = stages.continuous.linked & ~stages.links.linked
-    assert np.array_equal(broken, reasons != VALID) and broken.any()
-    names = [stages.candidates.reason_names[code] for code in np.unique(reasons[broken])]
-    for name in names:
-        alone = replace(prepared, judge=prepared.judge.only(frozenset({name})))
-        known = stages.candidates, stages.continuous, stages.tracked
-        left = links.valid_links(alone, *known, None, NEVER)
-        assert not left.linked[reasons == stages.candidates.reason_names.index(name)].any()
-    assert not {"torque", "manipulability"} & set(names)
-    # What is tested again passes now, so nothing may be.
-    monkeypatch.setattr(
-        links, "remains_valid", lambda _surface, edges, *_: np.ones(len(edges), dtype=bool)
-    )
-    found = judged_asking_less(without(prepared, [Torques()]), stages, Torques.reasons, clock)
-    assert same_answers(found, stages)
+    assert np.array_equal(found.reasons, anew.reasons)
 
 
 @examples(5)
@@ -227,8 +202,10 @@ def test_what_is_known_of_a_freer_scene_changes_nothing_of_what_is_found(
     some = [one.by(wider) for one in back if one.unit] if data.draw(st.booleans()) else []
     stricter = without(prepared, [*gone, *some])
     reasons = frozenset[str]().union(*(one.reasons or () for one in back))
-    found = judged_asking_more(stricter, judged(without(prepared, things), clock), reasons, clock)
-    assert same_answers(found, judged(stricter, clock))
+    found = built_asking_more(
+        stricter, build_prepared(without(prepared, things), clock), reasons, clock
+    )
+    assert same_answers(found, build_prepared(stricter, clock))
 
 
 @pytest.mark.parametrize(("segments", "said"), [(1, True), (3, False)])
@@ -319,13 +296,13 @@ def test_an_amount_is_asked_from_the_last_that_was_not_enough(
 ) -> None:
     asked: list[tuple[float, int]] = []
 
-    def noting(prepared: PreparedScene, before: Stages, *others: Any) -> Stages:
-        ground = prepared.workplace.ground
-        valid = int(before.candidates.valid.sum())
+    def noting(prepared: PreparedScene, before: BuildResult, *others: Any) -> BuildResult:
+        ground = prepared.ground
+        valid = int(before.verdicts.valid.sum())
         asked.append((-np.inf if ground is None else ground.offset_m, valid))
-        return judged_asking_less(prepared, before, *others)
+        return built_asking_less(prepared, before, *others)
 
-    monkeypatch.setattr(explaining, "judged_asking_less", noting)
+    monkeypatch.setattr(explaining, "built_asking_less", noting)
     cellcolor.explain(shipped("hemisphere_tilted", 120))
     as_it_is, whole = max(asked)[0], asked[0][1]
     lowered = [valid for offset, valid in asked if -np.inf < offset < as_it_is]

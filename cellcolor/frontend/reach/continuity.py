@@ -15,16 +15,15 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import Crack
-from cellcolor.errors import InputError
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.smooth import Measure, Probe, follow_edges
-from cellcolor.frontend.reach.validity import Candidates
+from cellcolor.frontend.reach.validity import Verdicts
 from cellcolor.mesh.triangle_mesh import grouped
 
 _ROUNDING = 1e-9  # rad, m; an angle on its limit is inside
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Coloring:
     """Colors of all nodes.
 
@@ -32,11 +31,15 @@ class Coloring:
         names: of the colors: the branch, with a number where it has several components.
         branch: of each color.
         node_color: (n, branches) the color of each valid configuration, -1 for others.
+        linked: (edges, branches) along which mesh edges each branch leads.
+        cracks: the mesh edges whose ends share a color that is not continuous along the edge.
     """
 
     names: tuple[str, ...]
     branch: tuple[int, ...]
     node_color: Index
+    linked: Mask
+    cracks: tuple[Crack, ...]
 
 
 def stays_in_limits(
@@ -69,7 +72,7 @@ def stays_in_limits(
 def link(
     surface: Surface,
     edges: Index,
-    candidates: Candidates,
+    verdicts: Verdicts,
     measure: Measure,
     limits: tuple[Array, Array] | None,
     probe: Probe,
@@ -87,10 +90,10 @@ def link(
         probe: see :data:`~cellcolor.frontend.reach.smooth.Probe`; called with points in between.
     """
     i, j = edges.T
-    linked: Mask = candidates.valid[i] & candidates.valid[j]
+    linked: Mask = verdicts.valid[i] & verdicts.valid[j]
     rows, branches = np.nonzero(linked)
-    start, end = (candidates.configurations[ends[rows], branches] for ends in (i, j))
-    at_start, at_end = (candidates.determinants[ends[rows], branches] for ends in (i, j))
+    start, end = (verdicts.configurations[ends[rows], branches] for ends in (i, j))
+    at_start, at_end = (verdicts.determinants[ends[rows], branches] for ends in (i, j))
     motions = follow_edges(
         surface,
         edges[rows],
@@ -108,9 +111,7 @@ def link(
     return linked
 
 
-def color_nodes(
-    nodes: Mask, configurations: Array, links: Index, branch_names: tuple[str, ...]
-) -> Coloring:
+def color_nodes(nodes: Mask, edges: Index, linked: Mask, branch_names: tuple[str, ...]) -> Coloring:
     """Connected components of linked nodes.
 
     Numbering is deterministic: colors follow their branches; within a branch the components
@@ -118,15 +119,11 @@ def color_nodes(
 
     Args:
         nodes: (n, branches) which of them there are.
-        configurations: (n, branches, joints) in rad, for errors.
-        links: (l, 2) nodes that a continuous motion joins, numbered vertex * branches + branch.
-
-    Raises:
-        InputError: a color has two configurations on one vertex; names vertex and
-            configurations.
+        edges: (k, 2) all mesh edges.
+        linked: (k, branches), see :func:`link`; False where an end is no node.
     """
     branches = nodes.shape[1]
-    component = grouped(nodes.size, links)
+    component = regions(nodes, edges, linked).ravel()
     present = np.flatnonzero(nodes)
     _, first, inverse, count = np.unique(
         component[present], return_index=True, return_inverse=True, return_counts=True
@@ -141,36 +138,18 @@ def color_nodes(
         name = branch_names[branch]
         names += [name] if size == 1 else [f"{name} {k}" for k in range(1, size + 1)]
     table = node_color.reshape(nodes.shape)
-    _check_injective(table, configurations, names)
-    return Coloring(tuple(names), tuple(of_branch.tolist()), table)
+    cracks = _cracks(edges, linked, table)
+    return Coloring(tuple(names), tuple(of_branch.tolist()), table, linked, cracks)
 
 
-def _check_injective(node_color: Index, configurations: Array, names: list[str]) -> None:
-    ordered = np.sort(node_color, axis=1)
-    twice = (ordered[:, 1:] == ordered[:, :-1]) & (ordered[:, 1:] >= 0)
-    if not twice.any():
-        return
-    vertex = int(np.argmax(twice.any(axis=1)))
-    shared = ordered[vertex, 1:][twice[vertex]][0]
-    joints = configurations[vertex][node_color[vertex] == shared].round(4).tolist()
-    raise InputError(
-        None,
-        f"vertices[{vertex}]",
-        f"color {names[shared]!r} covers it with {len(joints)} configurations: "
-        + " and ".join(map(str, joints)),
-    )
+def regions(nodes: Mask, edges: Index, linked: Mask) -> Index:
+    """The number of each node's component, (n, branches)."""
+    row, branch = np.nonzero(linked)
+    return grouped(nodes.size, edges[row] * nodes.shape[1] + branch[:, None]).reshape(nodes.shape)
 
 
-def node_links(edges: Index, linked: Mask) -> Index:
-    """The pairs of nodes (l, 2) that :func:`link` found continuous."""
-    rows, branch = np.nonzero(linked)
-    links: Index = edges[rows] * linked.shape[1] + branch[:, None]
-    return links
-
-
-def find_cracks(edges: Index, linked: Mask, coloring: Coloring) -> tuple[Crack, ...]:
-    """The mesh edges whose ends share a color that is not continuous along the edge itself."""
-    start, end = coloring.node_color[edges[:, 0]], coloring.node_color[edges[:, 1]]
+def _cracks(edges: Index, linked: Mask, node_color: Index) -> tuple[Crack, ...]:
+    start, end = node_color[edges[:, 0]], node_color[edges[:, 1]]
     torn = (start == end) & (start >= 0) & ~linked
     return tuple(
         Crack(int(edges[row, 0]), int(edges[row, 1]), tuple(sorted(start[row, torn[row]].tolist())))

@@ -316,7 +316,7 @@ def test_the_tool_comes_from_outside_whatever_the_normal(built: BuildResult) -> 
     for degrees, there in ((0, True), (60, True), (89, True), (91, False), (180, False)):
         tilt = np.radians(degrees)
         direction = np.array([[np.sin(tilt), 0, -np.cos(tilt)]])
-        assert np.isnan(prepared.kinematics.solve(point, direction)).all() != there
+        assert np.isnan(prepared.arm.kinematics.solve(point, direction)).all() != there
         # At 90 degrees the rule's vector is along the normal, and says all the same what it says.
         assert not prepared.arm.without_turn(point, direction).any()
 

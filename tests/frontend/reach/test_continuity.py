@@ -15,7 +15,6 @@ from shipped import shipped
 
 from cellcolor.arrays import Array
 from cellcolor.data.surface import Crack
-from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.parts.shapes import disc_mesh
@@ -23,13 +22,11 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import (
     Coloring,
     color_nodes,
-    find_cracks,
     link,
-    node_links,
     stays_in_limits,
 )
 from cellcolor.frontend.reach.smooth import Measure, joint_step
-from cellcolor.frontend.reach.validity import Candidates
+from cellcolor.frontend.reach.validity import Verdicts
 from cellcolor.frontend.setup import Continuity
 
 pytestmark = pytest.mark.second
@@ -74,12 +71,13 @@ class Plane:
         self.branches, self.determinant = branches, determinant
         every = np.arange(len(branches))
         configurations = np.stack([self.joints(vertices, np.full(7, b)) for b in every], axis=1)
-        self.candidates = Candidates(
+        self.candidates = Verdicts(
             configurations,
             np.where(np.isnan(configurations[:, :, 0]), Reason.NO_SOLUTION, Reason.VALID).astype(
                 np.uint8
             ),
             np.full((7, len(branches)), determinant),
+            np.empty((0, 7, len(branches), 3)),
             ("valid", "no solution"),
         )
         self.asked = 0
@@ -93,8 +91,8 @@ class Plane:
         q = self.joints(points, branch)
         return q, np.where(np.isnan(q[:, 0]), np.nan, self.determinant)
 
-    def colored(self, links: Array, names: tuple[str, ...]) -> Coloring:
-        return color_nodes(self.candidates.valid, self.candidates.configurations, links, names)
+    def colored(self, *names: str) -> Coloring:
+        return color_nodes(self.candidates.valid, self.edges, self.linked(), names)
 
     def linked(self, policy: Continuity = POLICY) -> Array:
         return link(self.surface, self.edges, self.candidates, measure(policy), None, self.probe)
@@ -166,12 +164,11 @@ def spiral(p: Array) -> float:
 
 def test_holonomy_makes_a_crack_and_no_second_color() -> None:
     plane = Plane(spiral)
-    linked = plane.linked()
-    coloring = plane.colored(node_links(plane.edges, linked), ("turning",))
+    coloring = plane.colored("turning")
     assert coloring.names == ("turning",)
     assert coloring.node_color[:, 0].tolist() == [-1, 0, 0, 0, 0, 0, 0]
     # arctan2 jumps between the vertices at 180 and at 240 degrees.
-    assert find_cracks(plane.edges, linked, coloring) == (Crack(4, 5, (0,)),)
+    assert coloring.cracks == (Crack(4, 5, (0,)),)
 
 
 def test_names_and_numbers() -> None:
@@ -181,24 +178,13 @@ def test_names_and_numbers() -> None:
         lambda _: np.nan,
         lambda p: 0.0 if abs(p[1]) < 0.1 else np.nan,
     )
-    links = node_links(plane.edges, plane.linked())
-    coloring = plane.colored(links, ("a", "b", "c"))
+    coloring = plane.colored("a", "b", "c")
     left = np.flatnonzero(plane.surface.vertices[:, 0] < -0.3)
     assert coloring.names == ("a 1", "a 2", "a 3", "c")
     assert coloring.branch == (0, 0, 0, 2)
     assert (coloring.node_color[left, 0] == 0).all()
     assert coloring.node_color[2, 0] == 1 and coloring.node_color[6, 0] == 2
     assert (coloring.node_color[:, 1] == -1).all()
-
-
-def test_two_configurations_of_one_color_are_reported() -> None:
-    plane = Plane(lambda p: 0.1 * p[0], lambda p: 0.1 * p[0] + 0.05)
-    links = node_links(plane.edges, plane.linked())
-    # What joint distance alone would do: the branches grow together at vertex 3.
-    merged = np.vstack([links, [[3 * 2, 3 * 2 + 1]]])
-    with pytest.raises(InputError, match=r"2 configurations: \[.*\] and \[") as caught:
-        plane.colored(merged, ("a", "b"))
-    assert caught.value.field == "vertices[0]"
 
 
 @pytest.fixture(scope="module")

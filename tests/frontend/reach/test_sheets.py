@@ -24,9 +24,10 @@ import cellcolor
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
-from cellcolor.frontend import Scene, build_surface
+from cellcolor.frontend import BuildResult, Scene, build_surface
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, signed_task_determinant, tip_jacobian
+from cellcolor.frontend.build import build_prepared
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, named, prepare
@@ -35,7 +36,6 @@ from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
 from cellcolor.frontend.setup import Continuity
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages, judged
 from cellcolor.memory import CHUNK
 
 pytestmark = pytest.mark.second
@@ -60,23 +60,23 @@ class Unnamed(InverseKinematics):
 def without_names(scene: Scene) -> tuple[PreparedScene, PreparedScene]:
     """A scene as it is, and with its arm's solutions told apart by continuity alone."""
     prepared = prepare(scene)
-    arm = replace(prepared.arm, kinematics=Unnamed(prepared.kinematics))
-    unnamed = named(replace(prepared, workplace=replace(prepared.workplace, arm=arm)))
+    arm = replace(prepared.arm, kinematics=Unnamed(prepared.arm.kinematics))
+    unnamed = named(replace(prepared, arm=arm))
     return prepared, unnamed
 
 
-def both(scene: Scene) -> tuple[Stages, Stages]:
+def both(scene: Scene) -> tuple[BuildResult, BuildResult]:
     """What comes out with names and without."""
-    first, second = (judged(each, StageClock(NEVER, None)) for each in without_names(scene))
+    first, second = (build_prepared(each, StageClock(NEVER, None)) for each in without_names(scene))
     return first, second
 
 
-def as_sets(stages: Stages) -> set[frozenset[tuple[int, tuple[float, ...]]]]:
+def as_sets(built: BuildResult) -> set[frozenset[tuple[int, tuple[float, ...]]]]:
     """The colors as sets of vertices with configurations, whatever they are called."""
     colors: dict[int, set[tuple[int, tuple[float, ...]]]] = {}
-    node_color = stages.cleaned.coloring.node_color
+    node_color = built.coloring.node_color
     for vertex, column in np.argwhere(node_color >= 0).tolist():
-        q = stages.candidates.configurations[vertex, column].round(6) + 0.0
+        q = built.configurations[vertex, column].round(6) + 0.0
         colors.setdefault(node_color[vertex, column], set()).add((vertex, tuple(q.tolist())))
     return set(map(frozenset, colors.values()))
 
@@ -87,9 +87,11 @@ def test_colors_are_the_same_without_names(name: str) -> None:
     own, unnamed = both(shipped(name, 200))
     assert len(as_sets(own)) >= 3
     assert as_sets(unnamed) == as_sets(own)
-    assert [(c.i, c.j) for c in unnamed.cleaned.cracks] == [(c.i, c.j) for c in own.cleaned.cracks]
+    assert [(c.i, c.j) for c in unnamed.coloring.cracks] == [
+        (c.i, c.j) for c in own.coloring.cracks
+    ]
     # Reasons too, but for the order.
-    for first, second in zip(own.candidates.reasons, unnamed.candidates.reasons, strict=True):
+    for first, second in zip(own.reasons, unnamed.reasons, strict=True):
         assert sorted(first.tolist()) == sorted(second.tolist())
     assert unnamed.branches[0] == "sheet-1"
 
@@ -101,7 +103,7 @@ def test_colors_are_the_same_without_names(name: str) -> None:
 def test_colors_of_the_six_scenes_are_the_same_without_names(name: str) -> None:
     own, unnamed = both(shipped(name))
     assert as_sets(unnamed) == as_sets(own)
-    assert unnamed.links.linked.sum() == own.links.linked.sum()
+    assert unnamed.all_colors.linked.sum() == own.all_colors.linked.sum()
 
 
 @given(
@@ -123,13 +125,13 @@ def test_without_names_an_arm_with_passing_wrist_axes_has_colors() -> None:
     result = build_surface(plate(dh_arms.urdf("passing"), "eaik", vertices=60))
     assert "none found on this part" in str(result.report)
     assert "not cuspidal" not in str(result.report)
-    follower, linked = Follower(result.robot), result.stages.links
-    row, sheet = np.argwhere(linked.linked).T
+    follower, linked = Follower(result.robot), result.all_colors.linked
+    row, sheet = np.argwhere(linked).T
     assert len(row) > 300 and max(color.vertices for color in result.report.colors) > 40
-    surface = result.stages.surface
+    surface = result.prepared.surface
     # By Newton's method on Pinocchio's Jacobian the links lead to where the sheets say.
     for k in np.random.default_rng(1).choice(len(row), 8, replace=False):
-        ends = linked.edges[row[k]]
+        ends = surface.edges()[row[k]]
         start, goal = result.configurations[ends, sheet[k]]
         path = follower.along(start, surface.vertices[ends], surface.normals[ends])
         assert path is not None and wrapped(path[-1] - goal).max() < 1e-6
@@ -319,6 +321,6 @@ def test_sheets_of_whole_poses_have_the_turn_that_the_setup_gives() -> None:
     vertex, sheet = np.nonzero(built.reasons == 0)
     assert len(vertex) > 400
     poses = forward(built.robot, built.configurations[vertex, sheet])
-    assert np.abs(poses.tip - built.stages.surface.vertices[vertex]).max() < 1e-9
+    assert np.abs(poses.tip - built.prepared.surface.vertices[vertex]).max() < 1e-9
     across = poses.rotation[:, -1] @ built.robot.tip[:3, 0]
     assert np.abs(across - [1, 0, 0]).max() < 1e-9
