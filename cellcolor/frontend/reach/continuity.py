@@ -14,13 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
+from cellcolor.configurations.matching import stays_within
 from cellcolor.data.surface import Crack
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.smooth import Measure, Probe, follow_edges
 from cellcolor.frontend.reach.validity import Verdicts
 from cellcolor.mesh.triangle_mesh import grouped
-
-_ROUNDING = 1e-9  # rad, m; an angle on its limit is inside
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,33 +39,6 @@ class Coloring:
     node_color: Index
     linked: Mask
     cracks: tuple[Crack, ...]
-
-
-def stays_in_limits(
-    lower: Array,
-    upper: Array,
-    start: Array,
-    lowest: Array,
-    highest: Array,
-    slides: Mask | None = None,
-) -> Mask:
-    """Whether motions fit into the joint limits (joints,), turned by full circles where need be.
-
-    With limits of -3 and 3 rad there is no way from 2.9 on by 0.48; with limits of -3 and 4 rad
-    there is.
-
-    Args:
-        start: (..., joints) where the motions begin, rad.
-        lowest, highest: (..., joints) how far each joint gets from there, at most and at least 0.
-        slides: (joints,) which joints are prismatic, in m; none without it.
-    """
-    circle = 2 * np.pi
-    turns = np.ceil((lower - start - lowest) / circle - _ROUNDING)
-    fits = start + highest + circle * turns <= upper + _ROUNDING
-    if slides is not None:
-        within = (start + lowest >= lower - _ROUNDING) & (start + highest <= upper + _ROUNDING)
-        fits = np.where(slides, within, fits)
-    return np.asarray(fits.all(axis=-1))
 
 
 def link(
@@ -106,7 +78,7 @@ def link(
     smooth = motions.smooth
     if limits is not None:
         moved = motions.lowest, motions.highest
-        smooth = smooth & stays_in_limits(*limits, start, *moved, measure.slides)
+        smooth = smooth & stays_within(limits, start, *moved, measure.periods)
     linked[rows, branches] = smooth
     return linked
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
+from cellcolor.configurations.matching import CIRCLE
 from cellcolor.data.wording import looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
@@ -89,10 +90,9 @@ class PreparedArm:
     def measure(self) -> Measure:
         """How motions along mesh edges are measured."""
         near_singular = self.conditioning.near_singular_determinant
-        policy, own, slides = self.setup.continuity, self.kinematics, self.robot.slides
-        if not slides.any():
-            return Measure(policy, near_singular, own.lever)
-        return Measure(policy, near_singular, own.lever, slides, own.reach)
+        own, slides = self.kinematics, self.robot.slides
+        periods, units = np.where(slides, np.inf, CIRCLE), np.where(slides, own.reach, 1.0)
+        return Measure(self.setup.continuity, near_singular, own.lever, periods, units)
 
     def without_turn(self, points: Array, directions: Array) -> Mask:
         """Where the setup's rule for the tool's turn gives no turn, (n,)."""

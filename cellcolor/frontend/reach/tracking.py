@@ -12,6 +12,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
+from cellcolor.configurations.matching import shorter_way
 from cellcolor.frontend.arm.kinematics import (
     Conditioning,
     forward,
@@ -22,7 +23,7 @@ from cellcolor.frontend.arm.kinematics import (
 from cellcolor.frontend.arm.newton import polished
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.parts.surface import Surface, along_edges
-from cellcolor.frontend.reach.smooth import Measure, Motions, joint_step, shorter_way
+from cellcolor.frontend.reach.smooth import Measure, Motions
 from cellcolor.memory import chunks
 
 
@@ -33,27 +34,16 @@ class Solutions:
     Attributes:
         joints: (..., joints) in rad, NaN where there is none.
         determinants: (...) task determinant with its sign, m^3, NaN where there is none.
-        apart: (...) how far the nearest other solution of the pose with the same sign is, the joint
-            that moves farthest, rad; infinite if there is no other.
         good: (...) whether the thresholds on conditioning are kept.
     """
 
     joints: Array
     determinants: Array
-    apart: Array
     good: Mask
 
     def take(self, *index: Index | slice | int) -> Solutions:
         """Some of them, as numpy indexes."""
         return Solutions(*(getattr(self, each.name)[index] for each in fields(self)))
-
-
-def clearly_nearest(step: Array, first: Array, second: Array) -> Mask:
-    """Whether steps in rad are less than half as long as the ways to other solutions at the ends.
-
-    A step to any other solution is longer then, whichever end it begins at.
-    """
-    return np.asarray(2 * step < np.minimum(first, second))
 
 
 _STEPS = 8  # of Newton's method; more are needed only where the step is too long
@@ -79,11 +69,9 @@ class Tracker:
         self._robot, self.measure, self._limits = robot, measure, limits
 
     def described(self, joints: Array) -> Solutions:
-        """Solutions (n, s, joints) of n poses, with what is needed to tell them apart."""
+        """Solutions (n, s, joints) of n poses, and how well conditioned the arm is in them."""
         shape = joints.shape[:2]
-        whole = Solutions(
-            joints, np.full(shape, np.nan), np.full(shape, np.inf), np.zeros(shape, dtype=bool)
-        )
+        whole = Solutions(joints, np.full(shape, np.nan), np.zeros(shape, dtype=bool))
         for rows in chunks(len(joints), joints.shape[1]):
             self._describe(whole.take(rows))
         return whole
@@ -100,12 +88,6 @@ class Tracker:
             part.good[there] = (np.abs(determinants) >= self._limits.min_task_determinant) & (
                 manipulability(linear, task) >= self._limits.min_manipulability
             )
-        signs = np.sign(part.determinants)
-        for other in range(part.joints.shape[1]):
-            step = joint_step(part.joints, part.joints[:, other : other + 1])
-            step[:, other] = np.inf
-            step[~(signs == signs[:, other : other + 1])] = np.inf  # NaN is equal to nothing
-            np.minimum(part.apart, step, out=part.apart)
 
     def walk(
         self, surface: Surface, edges: Index, start: Solutions, until: Array

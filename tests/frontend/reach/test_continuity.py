@@ -14,6 +14,7 @@ from reasons import Reason
 from shipped import shipped
 
 from cellcolor.arrays import Array
+from cellcolor.configurations.matching import farthest, stays_within
 from cellcolor.data.surface import Crack
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.robot import Robot
@@ -23,9 +24,8 @@ from cellcolor.frontend.reach.continuity import (
     Coloring,
     color_nodes,
     link,
-    stays_in_limits,
 )
-from cellcolor.frontend.reach.smooth import Measure, joint_step
+from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.validity import Verdicts
 from cellcolor.frontend.setup import Continuity
 
@@ -48,13 +48,13 @@ angles = st.lists(st.floats(-20, 20), min_size=6, max_size=6)
 
 
 @given(angles, angles, st.lists(st.integers(-2, 2), min_size=6, max_size=6))
-def test_joint_step_is_modulo_full_circles(
+def test_a_step_is_modulo_full_circles(
     first: list[float], second: list[float], circles: list[int]
 ) -> None:
     a, b = np.array(first), np.array(second)
-    step = joint_step(a, b)
+    step = farthest(a, b)
     assert 0 <= step <= np.pi + 1e-9
-    assert joint_step(a, b + 2 * np.pi * np.array(circles)) == pytest.approx(step, abs=1e-9)
+    assert farthest(a, b + 2 * np.pi * np.array(circles)) == pytest.approx(step, abs=1e-9)
     # On the unit circle the chord tells the same angle.
     chord = np.abs(np.exp(1j * a) - np.exp(1j * b)).max()
     assert 2 * np.sin(step / 2) == pytest.approx(chord, abs=1e-6)
@@ -105,7 +105,7 @@ def test_slow_motion_is_linked_without_probing() -> None:
 
 def test_fast_but_smooth_motion_is_linked_after_probing() -> None:
     plane = Plane(lambda p: 1.9 * p[0])
-    assert joint_step(*plane.candidates.configurations[[1, 0], 0]) > 1.1  # more than the bound
+    assert farthest(*plane.candidates.configurations[[1, 0], 0]) > 1.1  # more than the bound
     assert plane.linked().all() and plane.asked > 0
 
 
@@ -216,7 +216,7 @@ def test_what_is_linked_can_be_followed(
         and shared == result.node_color[j, branch]
         and (i, j, shared) not in cracked
     ]
-    steps = [joint_step(q[i, b], q[j, b]) for i, j, b in joined]
+    steps = [farthest(q[i, b], q[j, b]) for i, j, b in joined]
     # The fastest ones, and some from everywhere.
     fastest = np.argsort(steps)[-12:].tolist()
     others = np.random.default_rng(2).choice(len(joined), 12, replace=False).tolist()
@@ -225,7 +225,7 @@ def test_what_is_linked_can_be_followed(
         ends = [i, j]
         path = follower.along(q[i, branch], surface.vertices[ends], surface.vertices[ends] - center)
         assert path is not None
-        assert joint_step(path[-1], q[j, branch]) < 1e-6
+        assert farthest(path[-1], q[j, branch]) < 1e-6
 
 
 def test_cracks_are_on_shared_colors_and_colors_are_injective(
@@ -264,4 +264,4 @@ def test_way_between_limits(
     low, high, still = np.full(6, lower), np.full(6, upper), (lower + upper) / 2
     a, b = np.full(6, still), np.full(6, still)
     a[3], b[3] = first, second
-    assert stays_in_limits(low, high, a, *shorter_way(a, b)) == fits
+    assert stays_within((low, high), a, *shorter_way(a, b)) == fits

@@ -13,8 +13,6 @@ import numpy as np
 import pytest
 from arm_plates import cuspidal_scene, plate
 from continuation import Follower
-from hypothesis import given
-from hypothesis import strategies as st
 from independent import wrapped
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import shortest_path
@@ -31,9 +29,9 @@ from cellcolor.frontend.build import build_prepared
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, named, prepare
-from cellcolor.frontend.reach.sheets import Linking, sheets_of
+from cellcolor.frontend.reach.sheets import Followed, sheets_of
 from cellcolor.frontend.reach.smooth import Measure
-from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
+from cellcolor.frontend.reach.tracking import Solutions, Tracker
 from cellcolor.frontend.setup import Continuity
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.memory import CHUNK
@@ -106,21 +104,6 @@ def test_colors_of_the_six_scenes_are_the_same_without_names(name: str) -> None:
     assert unnamed.all_colors.linked.sum() == own.all_colors.linked.sum()
 
 
-@given(
-    first=st.floats(-3, 3),
-    others=st.lists(st.floats(-3, 3), min_size=1, max_size=5),
-    seed=st.integers(0, 2**32 - 1),
-)
-def test_what_is_clearly_nearest_is_nearest_from_both_ends(
-    first: float, others: list[float], seed: int
-) -> None:
-    here = np.array([first, *others])
-    there = here + np.random.default_rng(seed).normal(0, 0.3, len(here))
-    apart = [np.abs(np.delete(side, 0) - side[0]).min() for side in (here, there)]
-    if clearly_nearest(np.abs(there[0] - here[0]), *apart):
-        assert np.argmin(np.abs(there - here[0])) == np.argmin(np.abs(here - there[0])) == 0
-
-
 def test_without_names_an_arm_with_passing_wrist_axes_has_colors() -> None:
     result = build_surface(plate(dh_arms.urdf("passing"), "eaik", vertices=60))
     assert "none found on this part" in str(result.report)
@@ -142,13 +125,13 @@ def linked_nodes(prepared: PreparedScene) -> tuple[Array, Array, Array]:
     surface = prepared.surface
     arm = prepared.arm.bare
     found = arm.inverse(surface.vertices, -surface.normals)
-    verdicts = prepared.judge(found.reshape(-1, 6))
-    nodes = (verdicts.reasons == 0).reshape(found.shape[:2])
+    verdicts = prepared.judge(found)
+    nodes = verdicts.valid
     tracker = Tracker(arm.robot, arm.measure, arm.conditioning)
-    solutions = tracker.described(verdicts.configurations.reshape(found.shape))
+    solutions = tracker.described(verdicts.configurations)
     limits = prepared.robot.lower, prepared.robot.upper
-    pairs = Linking(surface, nodes, solutions, tracker, limits).links(surface.edges())
-    return solutions.joints, nodes, pairs
+    matching = Followed.of(surface, nodes, solutions, tracker, limits)
+    return solutions.joints, nodes, matching.along(surface.edges(), NEVER)[0]
 
 
 @pytest.mark.second
@@ -210,7 +193,7 @@ class Disc:
         joints = np.zeros((7, 2, 6))
         joints[:, 1, 0] = 2.0
         ones = np.ones((7, 2))
-        self.solutions = Solutions(joints, ones, 2 * ones, ones.astype(bool))
+        self.solutions = Solutions(joints, ones, ones.astype(bool))
 
     def along(self, first: int, second: int, wanted: set[frozenset[int]]) -> Array:
         rows = [k for k, edge in enumerate(self.edges.tolist()) if frozenset(edge) in wanted]
@@ -235,7 +218,7 @@ def test_a_component_and_what_is_linked_to_nothing() -> None:
     ones, (a, b) = np.ones((3, 2)), (0, 1)
     rows = {tuple(edge): row for row, edge in enumerate(surface.edges().tolist())}
     links = np.array([[rows[0, 1], a, b], [rows[1, 2], b, a]])
-    solutions = Solutions(np.zeros((3, 2, 6)), ones, ones, ones > 0)
+    solutions = Solutions(np.zeros((3, 2, 6)), ones, ones > 0)
     sheets = sheets_of(surface, links, ones > 0, solutions)
     none = -1
     assert sheets.T.tolist() == [[a, b, a], [b, none, none], [none, a, none], [none, none, b]]
@@ -285,7 +268,7 @@ def test_edges_that_are_compared_at_once_take_little(slots: int, joints: int) ->
     angles = np.tile(random.uniform(-3, 3, (slots, joints)), (7, 1, 1))
     angles[:, :, 0] = np.linspace(-3, 3, slots)  # no two are near each other
     ones = np.ones((7, slots))
-    solutions = Solutions(angles, ones, 0.5 * ones, ones.astype(bool))
+    solutions = Solutions(angles, ones, ones.astype(bool))
     policy = Continuity(
         base_step_rad=0.1,
         step_per_length_rad_per_m=1.0,
@@ -296,7 +279,7 @@ def test_edges_that_are_compared_at_once_take_little(slots: int, joints: int) ->
     tracemalloc.start()
     try:
         # Every solution has its like at the other end, so nothing has to be followed.
-        found = Linking(surface, ones > 0, solutions, follower, None).links(edges)
+        found = Followed.of(surface, ones > 0, solutions, follower, None).along(edges, NEVER)[0]
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
