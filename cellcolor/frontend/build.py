@@ -105,20 +105,6 @@ class BuildResult(Drawn):
         return self.verdicts.reason_names
 
     @property
-    def failures(self) -> dict[str, Mask]:
-        """(n, branches) of each test: the candidates that fail it, other tests or not.
-
-        Every test is made on every solution. A candidate is valid without some tests if it has a
-        solution and fails none of the others: masks of tests can be combined.
-        """
-        solved = ~np.isnan(self.configurations[..., 0])
-        masks = {}
-        for name, hit in self.prepared.judge.all_failures(self.configurations[solved]).items():
-            masks[name] = np.zeros(solved.shape, dtype=bool)
-            masks[name][solved] = hit
-        return masks
-
-    @property
     def color_branch(self) -> tuple[int, ...]:
         """The branch of each color of the surface."""
         return tuple(self.coloring.branch[color] for color in self.limits.color)

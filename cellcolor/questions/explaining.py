@@ -22,7 +22,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.build import BuildResult, build_prepared
 from cellcolor.frontend.judging_again import built_asking_less, built_asking_more
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.relaxing import Relaxation, ToolLength, relaxations_of, without
+from cellcolor.frontend.relaxing import TOOL_LENGTH, Relaxation, relaxations_of, without
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.questions.explanation import Explanation, RelaxedMinimum
 from cellcolor.solvers import checked
@@ -61,15 +61,15 @@ def explained(
             report(f"without {one.name}")
             alone[one] = asked.without([one])
             if not alone[one].same_as(base):
-                for part in one.parts(prepared):
+                for part in one.parts:
                     report(f"without {part.name}")
                     alone[part] = asked.without([part])
         saving = [one for one, row in alone.items() if _saves(row, base)]
-        for one in (*saving, ToolLength()):
-            if one.unit is not None:
+        for one in (*saving, TOOL_LENGTH):
+            if one.most:
                 report(f"how much of {one.name}")
                 found = asked.least_amount(one)
-                amounts += [found] if _saves(found, base) or one == ToolLength() else []
+                amounts += [found] if _saves(found, base) or one == TOOL_LENGTH else []
         if not saving and (base.lift_offs or 0) > 0:
             sets = asked.smallest_sets(report)
     except OutOfTime:
