@@ -100,6 +100,18 @@ def test_built_scenes_without_their_robots_have_the_same_minima(path: Path) -> N
     branches=st.integers(1, 3),
 )
 def test_planted_branches_are_found(seed: int, columns: int, rows: int, branches: int) -> None:
+    check_planted(seed, columns, rows, branches)
+
+
+@pytest.mark.slow
+def test_planted_branches_of_2000_surfaces(record_property: pytest.RecordProperty) -> None:
+    rng = np.random.default_rng(0)
+    for seed in range(2000):
+        check_planted(seed, *rng.integers((2, 2, 1), (6, 5, 4)).tolist())
+        record_property("surfaces", seed + 1)
+
+
+def check_planted(seed: int, columns: int, rows: int, branches: int) -> None:
     """Branches that are far apart, each at some vertices; the minimum against brute force over the
     colorings of the planted surface."""
     rng = np.random.default_rng(seed)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import tracemalloc
 from dataclasses import replace
 from itertools import pairwise
-from types import SimpleNamespace
-from typing import Any, cast
+from pathlib import Path
+from typing import Any
 
 import dh_arms
 import numpy as np
@@ -14,6 +13,7 @@ import pytest
 from arm_plates import cuspidal_scene, plate
 from continuation import Follower
 from independent import wrapped
+from library import INSTANCES
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import shortest_path
 from shipped import ROBOTS, shipped
@@ -30,17 +30,15 @@ from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, named, prepare
 from cellcolor.frontend.reach.sheets import Followed, sheets_of
-from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.tracking import Solutions, Tracker
-from cellcolor.frontend.setup import Continuity
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.memory import CHUNK
 
 pytestmark = pytest.mark.second
 
 
 class Unnamed(InverseKinematics):
-    """A family of arms without its names, its solutions in another order at every point."""
+    """A family of arms without its names: at every point its solutions are in another order, and
+    their joints turned by full circles."""
 
     branches = ()
 
@@ -52,7 +50,8 @@ class Unnamed(InverseKinematics):
         assert branches is None
         found = self._inner.solve(points, directions)
         salt = np.remainder(np.sin(1e5 * points.sum(axis=1))[:, None] * np.arange(1, 9), 1)
-        return np.take_along_axis(found, np.argsort(salt, axis=1)[:, :, None], axis=1)
+        turned = found + 2 * np.pi * np.rint(3 * salt - 1.5)[:, :, None]
+        return np.take_along_axis(turned, np.argsort(salt, axis=1)[:, :, None], axis=1)
 
 
 def without_names(scene: Scene) -> tuple[PreparedScene, PreparedScene]:
@@ -69,39 +68,53 @@ def both(scene: Scene) -> tuple[BuildResult, BuildResult]:
     return first, second
 
 
-def as_sets(built: BuildResult) -> set[frozenset[tuple[int, tuple[float, ...]]]]:
-    """The colors as sets of vertices with configurations, whatever they are called."""
-    colors: dict[int, set[tuple[int, tuple[float, ...]]]] = {}
+def as_sets(built: BuildResult, named: BuildResult) -> set[frozenset[tuple[int, int]]]:
+    """The colors as sets of vertices with the branches that their configurations have by name."""
     node_color = built.coloring.node_color
-    for vertex, column in np.argwhere(node_color >= 0).tolist():
-        q = built.configurations[vertex, column].round(6) + 0.0
-        colors.setdefault(node_color[vertex, column], set()).add((vertex, tuple(q.tolist())))
+    vertex, column = np.nonzero(node_color >= 0)
+    off = wrapped(named.configurations[vertex] - built.configurations[vertex, column][:, None])
+    far = np.nan_to_num(off.max(axis=2), nan=np.inf)
+    assert far.min(axis=1).max() < 1e-6
+    colors: dict[int, set[tuple[int, int]]] = {}
+    color = node_color[vertex, column].tolist()
+    for each, node in zip(color, zip(vertex, far.argmin(axis=1), strict=True), strict=True):
+        colors.setdefault(each, set()).add((int(node[0]), int(node[1])))
     return set(map(frozenset, colors.values()))
 
 
-@pytest.mark.second
-@pytest.mark.parametrize("name", ["wok", "square", "half_pipe"])
-def test_colors_are_the_same_without_names(name: str) -> None:
-    own, unnamed = both(shipped(name, 200))
-    assert len(as_sets(own)) >= 3
-    assert as_sets(unnamed) == as_sets(own)
+def check_without_names(scene: Scene) -> None:
+    """The same colors, cracks and minimum as with names; and reasons, but for the order."""
+    own, unnamed = both(scene)
+    assert len(as_sets(own, own)) >= 1
+    assert as_sets(unnamed, own) == as_sets(own, own)
     assert [(c.i, c.j) for c in unnamed.coloring.cracks] == [
         (c.i, c.j) for c in own.coloring.cracks
     ]
-    # Reasons too, but for the order.
-    for first, second in zip(own.reasons, unnamed.reasons, strict=True):
-        assert sorted(first.tolist()) == sorted(second.tolist())
+    assert unnamed.all_colors.linked.sum() == own.all_colors.linked.sum()
+    assert (np.sort(own.reasons, axis=1) == np.sort(unnamed.reasons, axis=1)).all()
     assert unnamed.branches[0] == "sheet-1"
+    minima = [cellcolor.solve(each.surface).solution for each in (own, unnamed)]
+    assert len({(each.segments, each.status) for each in minima}) == 1
+
+
+@pytest.mark.parametrize("name", ["wok", "square", "half_pipe"])
+def test_colors_are_the_same_without_names(name: str) -> None:
+    check_without_names(shipped(name, 200))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "name", ["wok", "wok_obstacle", "square", "half_pipe", "hemisphere_flat", "hemisphere_tilted"]
+    "file",
+    [
+        file
+        for folder in ("scenes", "arms", "parts")
+        for file in sorted((INSTANCES / folder).glob("*.toml"))
+        if "refused" not in file.stem
+    ],
+    ids=lambda file: file.stem,
 )
-def test_colors_of_the_six_scenes_are_the_same_without_names(name: str) -> None:
-    own, unnamed = both(shipped(name))
-    assert as_sets(unnamed) == as_sets(own)
-    assert unnamed.all_colors.linked.sum() == own.all_colors.linked.sum()
+def test_shipped_scenes_and_parts_are_the_same_without_names(file: Path) -> None:
+    check_without_names(Scene.read(file))
 
 
 def test_without_names_an_arm_with_passing_wrist_axes_has_colors() -> None:
@@ -238,53 +251,6 @@ def test_a_solution_linked_to_another_one_of_its_vertex_is_refused() -> None:
     with pytest.raises(InputError, match=r"2 configurations, \[0.0, .*\] and \[2.0, ") as caught:
         sheets_of(disc.surface, pairs, nodes, disc.solutions)
     assert caught.value.field == "vertices[1]"
-
-
-class Nowhere:
-    """Follows no motion; where all are settled at once there is none to be followed."""
-
-    def __init__(self, measure: Measure) -> None:
-        self.measure = measure
-
-    def walk(self, *given: Any) -> tuple[Array, Any]:
-        start = given[2]
-        assert not len(start.joints)
-        nothing = np.zeros(0, dtype=bool)
-        return start.joints, SimpleNamespace(
-            smooth=nothing, lowest=start.joints, highest=start.joints
-        )
-
-
-@pytest.mark.parametrize("joints", [2, 6, 7])
-@pytest.mark.parametrize("slots", [2, 8, 24])
-def test_edges_that_are_compared_at_once_take_little(slots: int, joints: int) -> None:
-    """All that numpy holds at one time, beside what was there before."""
-    count = CHUNK // slots
-    flat, faces = disc_mesh(7, 0.0, 0)
-    surface = Surface(np.column_stack([flat, np.zeros(7)]), faces, np.tile([0.0, 0.0, 1.0], (7, 1)))
-    own = surface.edges()
-    edges = own[np.arange(count) % len(own)]
-    random = np.random.default_rng(0)
-    angles = np.tile(random.uniform(-3, 3, (slots, joints)), (7, 1, 1))
-    angles[:, :, 0] = np.linspace(-3, 3, slots)  # no two are near each other
-    ones = np.ones((7, slots))
-    solutions = Solutions(angles, ones, ones.astype(bool))
-    policy = Continuity(
-        base_step_rad=0.1,
-        step_per_length_rad_per_m=1.0,
-        near_singular_determinant=0.0,
-        probe_spacing_m=0.01,
-    )
-    follower = cast(Tracker, Nowhere(Measure(policy, 0.0, 0.0)))
-    tracemalloc.start()
-    try:
-        # Every solution has its like at the other end, so nothing has to be followed.
-        found = Followed.of(surface, ones > 0, solutions, follower, None).along(edges, NEVER)[0]
-        peak = tracemalloc.get_traced_memory()[1]
-    finally:
-        tracemalloc.stop()
-    assert len(found) == count * slots
-    assert peak <= 50_000_000
 
 
 @pytest.mark.slow
