@@ -17,7 +17,6 @@ from cellcolor import memory
 from cellcolor.errors import TooLarge
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.frontend.reach.between import remains_valid
 from cellcolor.trajectory_checker.repeated import _near
 
 pytestmark = pytest.mark.second
@@ -65,13 +64,6 @@ def test_more_than_the_machine_has_is_refused(monkeypatch: pytest.MonkeyPatch) -
         TooLarge, match=r"judging 100,000 configurations of the arm would take 0.0 GB"
     ):
         prepared("ur5e_wok").judge(np.full((100_000, 6), np.nan))
-    with pytest.raises(TooLarge, match="on one mesh edge would take"):
-        surface = prepared("ur5e_wok").surface
-        edges, one = surface.edges()[:1], np.zeros(1, dtype=np.intp)
-        ends = surface.vertices[None, :, None]
-        remains_valid(
-            surface, edges, one, np.array([10**6]), ends, np.ones(1), lambda *_: pytest.fail()
-        )
     with pytest.raises(TooLarge, match="passes the same place too often"):
         points = np.zeros((400, 3))
         next(_near(cKDTree(points), points, 1.0))
