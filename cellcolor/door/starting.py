@@ -198,8 +198,7 @@ def arm_of(
     from cellcolor.frontend.arm.assembly import fix_joints
     from cellcolor.frontend.arm.kinematics import forward
     from cellcolor.frontend.arm.urdf import load_urdf
-    from cellcolor.frontend.contact.engine import pairs_of
-    from cellcolor.frontend.reach.always_touching import always_touching
+    from cellcolor.frontend.contact.engine import always_touching, pairs_of
     from cellcolor.frontend.reach.prepared_arm import prepare_arm
 
     arm = load_urdf(urdf)

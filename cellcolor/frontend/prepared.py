@@ -17,7 +17,7 @@ from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.far_shapes import notes_on_shapes
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.shape import Shape
-from cellcolor.frontend.contact.engine import Contacts, pairs_of
+from cellcolor.frontend.contact.engine import Contacts, always_touching, pairs_of
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_units
 from cellcolor.frontend.parts.inspection import note_on_crossings
@@ -25,7 +25,6 @@ from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.rounding import note_on_triangles
 from cellcolor.frontend.parts.sides import note_on_shell
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.reach.always_touching import always_touching
 from cellcolor.frontend.reach.prepared_arm import PreparedArm, prepare_arm
 from cellcolor.frontend.reach.sheets import in_sheets
 from cellcolor.frontend.reach.validity import Judge
