@@ -56,7 +56,7 @@ def cut_apart(there: Mask, edges: Index, pairs: Index, strength: Array) -> Index
 def _ends(there: Mask, edges: Index, pairs: Index) -> Index:
     """Both configurations of matches (l, 2), numbered vertex * s + slot."""
     row, a, b = pairs.T
-    return edges[row] * there.shape[1] + np.column_stack([a, b])
+    return np.asarray(edges[row] * there.shape[1] + np.column_stack([a, b]))
 
 
 def _forest(ends: Index, strength: Array, slots: int) -> Mask:

@@ -225,20 +225,21 @@ class Nearest(Matching):
 
     def settle(self, edges: Index, left: Mask, step: Array, nearest: Array) -> tuple[Index, Array]:
         asked = np.argwhere(left)
-        asked = tuple(asked[self.keeps_limits(edges, asked)].T)
+        rows, first, second = asked[self.keeps_limits(edges, asked)].T
         open_ = np.full(step.shape, np.inf)
-        open_[asked] = step[asked]
+        open_[rows, first, second] = step[rows, first, second]
         pairs: list[tuple[int, int, int]] = []
-        for row in np.unique(asked[0]).tolist():
-            pairs += [(row, a, b) for a, b in self._of_edge(*edges[row].tolist(), open_[row])]
+        for row in np.unique(rows).tolist():
+            pairs += [(row, a, b) for a, b in self._of_edge(edges[row], open_[row])]
         found = np.array(pairs, dtype=np.int64).reshape(-1, 3)
         if self.linked is not None:
             return found, np.full(len(found), np.inf)
         at = tuple(found.T)
         return found, nearest[at] / np.maximum(step[at], ROUNDING)
 
-    def _of_edge(self, i: int, j: int, step: Array) -> Iterator[tuple[int, int]]:
-        """The pairs of one edge that are matched; ``step`` (s, s) is used up."""
+    def _of_edge(self, edge: Index, step: Array) -> Iterator[tuple[int, int]]:
+        """The pairs of one edge (2,) that are matched; ``step`` (s, s) is used up."""
+        i, j = edge.tolist()
         while np.isfinite(least := step.min()):
             a, b = (int(place) for place in np.unravel_index(np.argmin(step), step.shape))
             if self.linked is not None and not self.linked(i, a, j, b):
