@@ -74,7 +74,7 @@ def in_sheets(arm: PreparedArm, surface: Surface, judge: Judge, deadline: Deadli
         own, Tracker(robot, measure), poses, joints, nodes[vertex, slot] & there
     )
     kinematics = turned.with_own(sheets) if isinstance(turned, TurnedKinematics) else sheets
-    return replace(bare, kinematics=kinematics, nameless=bare)
+    return replace(bare, kinematics=kinematics, own=bare.kinematics)
 
 
 class SheetKinematics(InverseKinematics):
@@ -144,9 +144,8 @@ class SheetKinematics(InverseKinematics):
                 -np.concatenate([self._directions[at], directions[target]]),
             )
             ends = np.column_stack([np.arange(len(at)), np.arange(len(at)) + len(at)])
-            known = self._tracker.described(self._joints[at, sheets[target]][:, None])
-            begin, whole = known.take(slice(None), 0), np.ones(len(at))
-            found[target] = self._tracker.walk(way, ends, begin, whole)[0]
+            begin = self._tracker.described(self._joints[at, sheets[target]])
+            found[target] = self._tracker.walk(way, ends, begin)[0]
         return found
 
     def taken(self, directions: Array) -> Array:
@@ -211,7 +210,7 @@ class Followed(Matching):
     def _walked(self, edges: Index, row: Index, slot: Index) -> Index:
         """Where solutions at first ends of rows of edges lead: row, slot, slot there, (l, 3)."""
         start = self.solutions.take(edges[row, 0], slot)
-        ends, motions = self.tracker.walk(self.surface, edges[row], start, np.ones(len(row)))
+        ends, motions = self.tracker.walk(self.surface, edges[row], start)
         smooth = motions.smooth
         if self.limits is not None:
             moved = motions.lowest, motions.highest

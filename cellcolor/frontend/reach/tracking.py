@@ -69,35 +69,28 @@ class Tracker:
         self._robot, self.measure, self._limits = robot, measure, limits
 
     def described(self, joints: Array) -> Solutions:
-        """Solutions (n, s, joints) of n poses, and how well conditioned the arm is in them."""
-        shape = joints.shape[:2]
-        whole = Solutions(joints, np.full(shape, np.nan), np.zeros(shape, dtype=bool))
-        for rows in chunks(len(joints), joints.shape[1]):
-            self._describe(whole.take(rows))
-        return whole
+        """Solutions (..., joints), and how well conditioned the arm is in them."""
+        flat, task = joints.reshape(-1, joints.shape[-1]), self._robot.task
+        determinants, good = np.full(len(flat), np.nan), np.zeros(len(flat), dtype=bool)
+        for part in chunks(len(flat)):
+            rows = part.start + np.flatnonzero(~np.isnan(flat[part, 0]))
+            poses = forward(self._robot, flat[rows])
+            linear, angular = tip_jacobian(poses)
+            own = signed_task_determinant(linear, angular, poses.tool_axis, task)
+            determinants[rows], good[rows] = own, True
+            if self._limits is not None:
+                good[rows] = (np.abs(own) >= self._limits.min_task_determinant) & (
+                    manipulability(linear, task) >= self._limits.min_manipulability
+                )
+        shape = joints.shape[:-1]
+        return Solutions(joints, determinants.reshape(shape), good.reshape(shape))
 
-    def _describe(self, part: Solutions) -> None:
-        """Fill in all but the joints; the arrays are parts of larger ones."""
-        there = np.nonzero(~np.isnan(part.joints[:, :, 0]))
-        poses = forward(self._robot, part.joints[there])
-        linear, angular = tip_jacobian(poses)
-        task = self._robot.task
-        determinants = signed_task_determinant(linear, angular, poses.tool_axis, task)
-        part.determinants[there], part.good[there] = determinants, True
-        if self._limits is not None:
-            part.good[there] = (np.abs(determinants) >= self._limits.min_task_determinant) & (
-                manipulability(linear, task) >= self._limits.min_manipulability
-            )
-
-    def walk(
-        self, surface: Surface, edges: Index, start: Solutions, until: Array
-    ) -> tuple[Array, Motions]:
-        """Follow solutions from the first ends of edges.
+    def walk(self, surface: Surface, edges: Index, start: Solutions) -> tuple[Array, Motions]:
+        """Follow solutions from the first ends of edges to the second ones.
 
         Args:
             edges: (k, 2) vertex indices.
             start: (k,) at the first ends.
-            until: (k,) how far, from 0 to 1.
 
         Returns:
             Where they end, (k, joints), NaN where a motion is lost since it jumps or passes a point
@@ -106,16 +99,16 @@ class Tracker:
         measure, count = self.measure, len(edges)
         shortest = measure.policy.probe_spacing_m / _SHORTER
         lengths, turns = surface.lengths(edges), surface.turns(edges)
-        at, ahead = np.zeros(count), until.copy()
+        at, ahead = np.zeros(count), np.ones(count)
         now = Solutions(*(getattr(start, each.name).copy() for each in fields(start)))
         moved, lowest, highest = np.zeros((3, *now.joints.shape))
         smooth = np.ones(count, dtype=bool)
-        rows = np.flatnonzero(until > 0)
+        rows = np.arange(count)
         while len(rows):
             here = now.take(rows)
             goal = along_edges(surface, edges[rows], ahead[rows])
             joints = polished(self._robot, here.joints[:, None], *goal, np.inf, _STEPS)
-            there = self.described(joints).take(slice(None), 0)
+            there = self.described(joints[:, 0])
             way = shorter_way(here.joints, there.joints)
             with np.errstate(divide="ignore", invalid="ignore"):
                 ratio = there.determinants / here.determinants
@@ -134,7 +127,7 @@ class Tracker:
             # A step that was sure is doubled for the next one, another one halved.
             length = (ahead[rows] - at[rows]) * np.where(sure, 2.0, 0.5)
             at[gone] = ahead[gone]
-            ahead[rows] = np.minimum(at[rows] + length, until[rows])
-            rows = rows[smooth[rows] & (at[rows] < until[rows])]
+            ahead[rows] = np.minimum(at[rows] + length, 1.0)
+            rows = rows[smooth[rows] & (at[rows] < 1.0)]
         now.joints[~smooth] = np.nan
         return now.joints, Motions(smooth, lowest, highest)
