@@ -304,8 +304,9 @@ def colored(
             areas = surface.vertex_areas()
             kept, report = clean(edges, all_colors, areas, policy, clock.deadline)
             coloring = color_nodes(kept, edges, linked & kept[edges].all(axis=1), branches)
-    clock.begin("report")
+    clock.begin("surface")
     limits = _limited(prepared, verdicts, coloring)
+    clock.deadline.check()
     lost = verdicts.valid.any(axis=1) & (coloring.node_color < 0).all(axis=1)
     labelled = LabelledSurface(
         name=prepared.scene.name,

@@ -14,12 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
+from cellcolor.configurations.components import components_of
 from cellcolor.configurations.matching import stays_within
 from cellcolor.data.surface import Crack
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.smooth import Measure, Probe, follow_edges
 from cellcolor.frontend.reach.validity import Verdicts
-from cellcolor.mesh.triangle_mesh import grouped
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,17 +64,10 @@ def link(
     i, j = edges.T
     linked: Mask = verdicts.valid[i] & verdicts.valid[j]
     rows, branches = np.nonzero(linked)
-    start, end = (verdicts.configurations[ends[rows], branches] for ends in (i, j))
-    at_start, at_end = (verdicts.determinants[ends[rows], branches] for ends in (i, j))
-    motions = follow_edges(
-        surface,
-        edges[rows],
-        branches,
-        (start, end),
-        (at_start, at_end),
-        measure,
-        probe,
-    )
+    start, end = (verdicts.configurations[side[rows], branches] for side in (i, j))
+    at_start, at_end = (verdicts.determinants[side[rows], branches] for side in (i, j))
+    ends, determinants = (start, end), (at_start, at_end)
+    motions = follow_edges(surface, edges[rows], branches, ends, determinants, measure, probe)
     smooth = motions.smooth
     if limits is not None:
         moved = motions.lowest, motions.highest
@@ -94,30 +87,24 @@ def color_nodes(nodes: Mask, edges: Index, linked: Mask, branch_names: tuple[str
         edges: (k, 2) all mesh edges.
         linked: (k, branches), see :func:`link`; False where an end is no node.
     """
-    branches = nodes.shape[1]
-    component = regions(nodes, edges, linked).ravel()
-    present = np.flatnonzero(nodes)
-    _, first, inverse, count = np.unique(
-        component[present], return_index=True, return_inverse=True, return_counts=True
-    )
-    branch_of = present[first] % branches
-    order = np.lexsort((first, -count, branch_of))
-    node_color = np.full(nodes.size, -1, dtype=np.int64)
-    node_color[present] = np.argsort(order)[inverse]
-    of_branch = branch_of[order]
+    component = regions(nodes, edges, linked)
+    of_branch = np.zeros(component.max(initial=-1) + 1, dtype=np.int64)
+    of_branch[component[nodes]] = np.nonzero(nodes)[1]
+    order = np.argsort(of_branch, kind="stable")
+    node_color = np.full(nodes.shape, -1, dtype=np.int64)
+    node_color[nodes] = np.argsort(order)[component[nodes]]
     names = []
-    for branch, size in enumerate(np.bincount(of_branch, minlength=branches)):
-        name = branch_names[branch]
+    sizes = np.bincount(of_branch, minlength=len(branch_names)).tolist()
+    for name, size in zip(branch_names, sizes, strict=True):
         names += [name] if size == 1 else [f"{name} {k}" for k in range(1, size + 1)]
-    table = node_color.reshape(nodes.shape)
-    cracks = _cracks(edges, linked, table)
-    return Coloring(tuple(names), tuple(of_branch.tolist()), table, linked, cracks)
+    branch = tuple(of_branch[order].tolist())
+    return Coloring(tuple(names), branch, node_color, linked, _cracks(edges, linked, node_color))
 
 
 def regions(nodes: Mask, edges: Index, linked: Mask) -> Index:
-    """The number of each node's component, (n, branches)."""
+    """The number of each node's component, (n, branches), largest first; -1 for no node."""
     row, branch = np.nonzero(linked)
-    return grouped(nodes.size, edges[row] * nodes.shape[1] + branch[:, None]).reshape(nodes.shape)
+    return components_of(nodes, edges, np.column_stack([row, branch, branch]))
 
 
 def _cracks(edges: Index, linked: Mask, node_color: Index) -> tuple[Crack, ...]:
