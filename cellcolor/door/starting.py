@@ -399,7 +399,7 @@ class _Reached:
         valid = self.valid
         good = np.where(valid, np.minimum(self.determinants / (greatest or 1.0), self.room), 0.0)
         if not self.prepared.arm.named:  # columns are no postures
-            valid, good = valid.any(axis=1, keepdims=True), good.max(axis=1, keepdims=True)
+            valid, good = np.array([valid.any(axis=1)]).T, np.array([good.max(axis=1)]).T
         shares, worst = valid.mean(axis=0).round(2), np.quantile(good, _WORST, axis=0)
         branch = max(range(len(shares)), key=lambda own: (shares[own], worst[own]))
         share = float(valid.any(axis=1).mean().round(2))
