@@ -229,8 +229,8 @@ def from_configurations(
     color = components_of(there, edges, pairs)
     if len(repeated := twice(color)):
         if conflicts == "refuse":
-            vertices = np.unique(repeated[:, 0]).tolist()
-            raise InputError(None, f"configurations[{vertices[0]}]", _refusal(vertices))
+            at = np.unique(repeated[:, 0]).tolist()
+            raise InputError(None, f"configurations[{at[0]}]", _refusal(at))
         kept = cut_apart(there, edges, pairs, strength)
         color = components_of(there, edges, kept)
     doubtful = tuple(matching.noted)

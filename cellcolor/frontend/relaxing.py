@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from itertools import compress
 from math import degrees
+from typing import Any
 
 import numpy as np
 
@@ -100,11 +101,11 @@ def _test(test: str, name: str, key: str) -> Relaxation:
     return Relaxation(name, key, applied, frozenset({test}))
 
 
-def _with_arm(prepared: PreparedScene, **changes: object) -> PreparedScene:
+def _with_arm(prepared: PreparedScene, **changes: Any) -> PreparedScene:
     return named(replace(prepared, arm=replace(prepared.arm, **changes)))
 
 
-def _with_room(prepared: PreparedScene, **changes: object) -> PreparedScene:
+def _with_room(prepared: PreparedScene, **changes: Any) -> PreparedScene:
     """The scene with other surroundings, of which the room at the tool's tip is told."""
     there = replace(prepared, **changes)
     tip = Tip(there.robot, there.tip.body.radius, there.obstacles, there.ground)
