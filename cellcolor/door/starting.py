@@ -297,7 +297,6 @@ def best_place(
         InputError: nothing of it can be reached anywhere.
     """
     from cellcolor.data.candidate_table import VALID
-    from cellcolor.frontend.parts.placement import Placement
     from cellcolor.frontend.prepared import prepare
     from cellcolor.frontend.scene import Scene
 
@@ -305,7 +304,7 @@ def best_place(
     table["object"]["file"] = str(mesh.resolve())
     scene = Scene(**table | {"setup": arm.setup})
     with naming(mesh):
-        vertices = scene.object.surface(scene.folder, deadline).vertices
+        vertices = scene.placement.placed(scene.object.surface(scene.folder, deadline).vertices)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     middle = (low + high) / 2
     best: tuple[PreparedScene, float] | None = None
@@ -319,7 +318,7 @@ def best_place(
     for far, height in product(_FARTHER, heights):
         position = x + far * arm.reach - middle[0], y - middle[1], height
         try:
-            place = Placement(position_m=(np.round(position, 3) + 0.0).tolist())
+            place = scene.placement.varied(position_m=(np.round(position, 3) + 0.0).tolist())
             if prepared is None:
                 prepared = prepare(scene.varied(placement=place), deadline)
             else:
