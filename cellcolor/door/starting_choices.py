@@ -50,18 +50,20 @@ def last_link(parent: dict[str, str]) -> str:
 
 def is_weightless(tool: Urdf) -> bool:
     """Whether a link with a shape has no mass."""
-    links = {link.get("name", ""): link for link in tool.xml.findall("link")}
-    return any(links[name].find("inertial") is None for name in tool.shapes)
+    return any(tool.links[name].find("inertial") is None for name in tool.shapes)
 
 
-def mount_line(arm: Urdf, flange: str) -> str:
+def mount_line(arm: Urdf, flange: str, still: Mapping[str, float]) -> str:
     """The setup's line that turns the tool's z axis onto the last joint's, if it is not there.
 
     Some vendors' flanges have their x axis along that of the joint.
+
+    Args:
+        still: the positions of joints that stand still.
     """
     from cellcolor.frontend.parts.placement import rpy_from_rotation
 
-    x, y, z = _last_axis(arm, flange)
+    x, y, z = _last_axis(arm, flange, still)
     along = np.hypot(x, y) < _ALONG
     if along and z > 0:
         return ""
@@ -72,24 +74,29 @@ def mount_line(arm: Urdf, flange: str) -> str:
     return f"mount_rpy_rad = {angles}   # turns the tool's z axis onto the last joint's\n"
 
 
-def _last_axis(arm: Urdf, flange: str) -> Array:
+def _last_axis(arm: Urdf, flange: str, still: Mapping[str, float]) -> Array:
     """The last axis (3,) before the flange, in its frame; outward with all joints at zero."""
-    from cellcolor.frontend.parts.placement import rotation_from_rpy
+    import pinocchio as pin
 
-    joints = {joint.get("name"): joint for joint in arm.xml.findall("joint")}
-    turn, out, link = np.eye(3), np.zeros(3), flange  # of the flange, seen from a link before it
-    axis: Array | None = None
-    while link in arm.parent:
-        joint = joints[arm.joint_above[link]]
-        if axis is None and arm.joint_above[link] in arm.kinds:
-            axis = _numbers(joint.find("axis"), "xyz", "1 0 0") @ turn
-            axis /= np.linalg.norm(axis)
-        if axis is not None and abs(ahead := axis @ (out @ turn)) > _AHEAD:
+    from cellcolor.frontend.arm.assembly import pinocchio_models
+
+    model, _ = pinocchio_models(arm, still)
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, np.zeros(model.nq))
+    at = {frame.name: data.oMf[number] for number, frame in enumerate(model.frames)}
+    moving = arm.leading.keys() - still
+    before = list(reversed(arm.chain(flange)))
+    last = next((k for k, link in enumerate(before) if arm.joint_above.get(link) in moving), None)
+    if last is None:
+        return np.array([0.0, 0.0, 1.0])
+    joint = model.getJointId(arm.joint_above[before[last]])
+    own = _numbers(arm.joints[model.names[joint]].find("axis"), "xyz", "1 0 0")
+    axis = at[flange].rotation.T @ data.oMi[joint].rotation @ own
+    for link in before[last:]:
+        ahead = axis @ (at[flange].rotation.T @ (at[flange].translation - at[link].translation))
+        if abs(ahead) > _AHEAD:
             return np.asarray(axis * np.sign(ahead))
-        xyz, rpy = (_numbers(joint.find("origin"), key, "0 0 0") for key in ("xyz", "rpy"))
-        rotation = rotation_from_rpy(*rpy)
-        turn, out, link = rotation @ turn, xyz + rotation @ out, arm.parent[link]
-    return np.array([0.0, 0.0, 1.0]) if axis is None else axis
+    return np.asarray(axis)
 
 
 def _numbers(element: ET.Element | None, key: str, usual: str) -> Array:
@@ -101,18 +108,13 @@ def fixed_of(arm: Urdf, flange: str, given: Mapping[str, float]) -> dict[str, fl
 
     Where none is given, the one nearest to zero.
     """
-    from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC
+    from cellcolor.frontend.arm.urdf import PRISMATIC, limits_of
 
     in_chain = {arm.joint_above[link] for link in arm.chain(flange)[1:]}
-    joints = {joint.get("name", ""): joint for joint in arm.xml.findall("joint")}
     fixed = dict(given)
-    for name, kind in arm.kinds.items():
+    for name, kind in arm.leading.items():
         if name not in fixed and (kind == PRISMATIC or name not in in_chain):
-            limit = None if kind == CONTINUOUS else joints[name].find("limit")
-            ends = (0.0, 0.0)
-            if limit is not None:
-                ends = float(limit.get("lower", 0)), float(limit.get("upper", 0))
-            fixed[name] = float(np.clip(0.0, *ends))
+            fixed[name] = float(np.clip(0.0, *limits_of(arm.joints[name])))
     return fixed
 
 
