@@ -45,10 +45,9 @@ from cellcolor.frontend.arm.kinematics import (
     one_across,
     turned_about,
 )
-from cellcolor.frontend.arm.newton import merged, polished
+from cellcolor.frontend.arm.newton import Polished
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.setup import RobotFiles
-from cellcolor.memory import chunks
 
 _TOLERANCE = 1e-3  # m and rad; vendors write 1.5708 for a right angle
 _LEAST = 1e-6  # m; of a length, and of a sine
@@ -115,17 +114,8 @@ class OffsetWrist(InverseKinematics):
         directions: Array,
         branches: NDArray[np.intp] | None = None,  # noqa: ARG002
     ) -> Array:
-        parts = [np.empty((0, 0, 6))]
-        batches = list(chunks(len(points), _ANGLES))
-        for rows in batches:
-            starts = self._starts(points[rows], directions[rows])
-            found = polished(self._robot, starts, points[rows], directions[rows], _FARTHEST)
-            parts.append(merged(found))
-        most = max(part.shape[1] for part in parts)
-        every = np.full((len(points), most, 6), np.nan)
-        for rows, part in zip(batches, parts[1:], strict=True):
-            every[rows, : part.shape[1]] = part
-        return every
+        own = {"robot": self._robot, "closed_form": self._starts, "at_a_time": _ANGLES}
+        return Polished(**own, farthest=_FARTHEST).solve(points, directions)
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
         """How many solutions are missing at least."""
