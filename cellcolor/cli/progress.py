@@ -1,4 +1,4 @@
-"""Who does long work, and how far it is, on standard error."""
+"""How far long work is, on standard error."""
 
 from __future__ import annotations
 
@@ -7,16 +7,12 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from cellcolor.cli.ending import INTERRUPTS
 from cellcolor.cli.terminal import shown
 from cellcolor.data.wording import count
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import naming
-
-if TYPE_CHECKING:
-    from cellcolor.lab.workers import Workers
 
 _MINUTE = 60.0  # s
 
@@ -113,24 +109,3 @@ def progress_bar(total: int) -> Iterator[Callable[[int, str], None]]:
     with bar:
         task = bar.add_task("", total=total)
         yield lambda done, text: bar.update(task, completed=done, description=text)
-
-
-def workers_for(jobs: int, cluster: str | None) -> Workers:
-    """Processes of this machine, or those of a Dask cluster.
-
-    Args:
-        jobs: pieces of work at a time; a cluster says itself how many it does.
-        cluster: the address of its scheduler.
-
-    Raises:
-        InputError: there is no such cluster, or no Dask.
-    """
-    if cluster is None:
-        from cellcolor.lab.workers import LocalWorkers
-
-        return LocalWorkers(jobs)
-    from cellcolor.door.extras import extras_for
-
-    with extras_for("--cluster"):
-        from cellcolor.lab.cluster import ClusterWorkers
-    return ClusterWorkers(cluster)

@@ -21,8 +21,9 @@ from cellcolor.mesh.dividing import halved
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 MOST_VERTICES = 250_000
-"""No surface is refined beyond that, so that painting it stays within the memory that is promised
-(docs/motion.md has what was measured)."""
+"""No surface is refined beyond that, so that painting it stays within the memory that is promised.
+One that grew from 11,664 to 190,761 vertices took 22 s and 970 MB, and moving its borders 40 s and
+1.4 GB in all."""
 
 
 @dataclass(frozen=True)

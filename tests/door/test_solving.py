@@ -184,9 +184,6 @@ def test_a_notebook_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> Non
         ({"workers": "two"}, "workers: "),
         ({"search_space": "all"}, "search_space: "),
         ({"strands": 2}, "strands: must be 1 in search space 'paper'"),
-        ({"uncovered_price": -1.0}, "uncovered_price: must be a number from 0 to 1000000, is -1"),
-        ({"uncovered_price": 1e17}, "uncovered_price: must be a number from 0 to 1000000"),
-        ({"uncovered_price": 3.0, "cover": 0.5}, "uncovered_price: goes without cover"),
     ],
     ids=str,
 )
@@ -212,15 +209,6 @@ def test_options_reach_the_solver() -> None:
     seen: list[tuple[int | None, int]] = []
     cellcolor.solve("hub_24", progress=lambda best, least: seen.append((best, least)))
     assert seen and seen[-1][0] == 15
-
-
-def test_a_start_is_a_solution_of_the_same_instance(tmp_path: Path) -> None:
-    first = cellcolor.solve("ring")
-    first.save(tmp_path / "s.json")
-    for start in (first, first.solution, tmp_path / "s.json", str(tmp_path / "s.json")):
-        assert cellcolor.solve("ring", start=start).segments == 2
-        with pytest.raises(InputError, match="is not valid"):
-            cellcolor.solve("split-cell", start=start)
 
 
 def test_check_finds_what_is_wrong() -> None:
