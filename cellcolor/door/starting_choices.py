@@ -13,8 +13,6 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
 
 if TYPE_CHECKING:
-    import xml.etree.ElementTree as ET
-
     from cellcolor.arrays import Array, Index, Mask
     from cellcolor.frontend.arm.urdf import Urdf
     from cellcolor.frontend.parts.surface import Surface
@@ -26,7 +24,6 @@ CoverChoice = Literal["largest", "all"]
 
 _TOWARD = np.array([-1.0, 0.0, 1.0]) / np.sqrt(2)  # the part lies before the robot: up and back
 _ALONG = 1e-3  # rad; an axis so near to another one is along it
-_AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
 _ANY_WAY = 0.2  # the mean of the unit normals of what faces every way is shorter
 _LARGER = 1.02  # times the inner side's area has a shell's outer one, if it is bent
 _ABOVE = (0.1, 0.15, 0.05, 0.2)  # m; so far over the part the arm waits, the first that is free
@@ -61,9 +58,10 @@ def mount_line(arm: Urdf, flange: str, still: Mapping[str, float]) -> str:
     Args:
         still: the positions of joints that stand still.
     """
+    from cellcolor.frontend.arm.assembly import last_axis
     from cellcolor.frontend.parts.placement import rpy_from_rotation
 
-    x, y, z = _last_axis(arm, flange, still)
+    x, y, z = last_axis(arm, flange, still)
     along = np.hypot(x, y) < _ALONG
     if along and z > 0:
         return ""
@@ -72,35 +70,6 @@ def mount_line(arm: Urdf, flange: str, still: Mapping[str, float]) -> str:
     onto = np.diag([1, -1, -1]) if along else np.eye(3) + cross + cross @ cross / (1 + z)
     angles = [round(angle, 9) + 0.0 for angle in rpy_from_rotation(onto)]
     return f"mount_rpy_rad = {angles}   # turns the tool's z axis onto the last joint's\n"
-
-
-def _last_axis(arm: Urdf, flange: str, still: Mapping[str, float]) -> Array:
-    """The last axis (3,) before the flange, in its frame; outward with all joints at zero."""
-    import pinocchio as pin
-
-    from cellcolor.frontend.arm.assembly import pinocchio_models
-
-    model, _ = pinocchio_models(arm, still)
-    data = model.createData()
-    pin.framesForwardKinematics(model, data, np.zeros(model.nq))
-    at = {frame.name: data.oMf[number] for number, frame in enumerate(model.frames)}
-    moving = arm.leading.keys() - still
-    before = list(reversed(arm.chain(flange)))
-    last = next((k for k, link in enumerate(before) if arm.joint_above.get(link) in moving), None)
-    if last is None:
-        return np.array([0.0, 0.0, 1.0])
-    joint = model.getJointId(arm.joint_above[before[last]])
-    own = _numbers(arm.joints[model.names[joint]].find("axis"), "xyz", "1 0 0")
-    axis = at[flange].rotation.T @ data.oMi[joint].rotation @ own
-    for link in before[last:]:
-        ahead = axis @ (at[flange].rotation.T @ (at[flange].translation - at[link].translation))
-        if abs(ahead) > _AHEAD:
-            return np.asarray(axis * np.sign(ahead))
-    return np.asarray(axis)
-
-
-def _numbers(element: ET.Element | None, key: str, usual: str) -> Array:
-    return np.array((usual if element is None else element.get(key, usual)).split(), dtype=float)
 
 
 def fixed_of(arm: Urdf, flange: str, given: Mapping[str, float]) -> dict[str, float]:

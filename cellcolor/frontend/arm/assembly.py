@@ -16,9 +16,17 @@ from collections.abc import Mapping
 import numpy as np
 import pinocchio as pin
 
+from cellcolor.arrays import Array
 from cellcolor.data.wording import looks_like_degrees
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.urdf import PRISMATIC, Follower, Urdf, inertial_fault, limits_of
+from cellcolor.frontend.arm.urdf import (
+    PRISMATIC,
+    Follower,
+    Urdf,
+    axis_of,
+    inertial_fault,
+    limits_of,
+)
 
 _FLANGES = ("tool0", "flange", "ee_link", "tool_flange", "wrist_3_link", "link_6")  # of vendors
 
@@ -155,6 +163,34 @@ def without(
     locked = [*map(model.getJointId, standing)]
     reduced: tuple[pin.Model, pin.GeometryModel] = pin.buildReducedModel(model, geometry, locked, q)
     return reduced
+
+
+_AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
+
+
+def last_axis(urdf: Urdf, flange: str, standing: Mapping[str, float]) -> Array:
+    """The last axis (3,) before the flange, in its frame; outward with all joints at zero.
+
+    Args:
+        standing: see :func:`pinocchio_models`.
+    """
+    model, _ = pinocchio_models(urdf, standing)
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, np.zeros(model.nq))
+    at = {frame.name: data.oMf[number] for number, frame in enumerate(model.frames)}
+    moving = urdf.leading.keys() - standing
+    links = list(reversed(urdf.chain(flange)))
+    last = next((k for k, link in enumerate(links) if urdf.joint_above.get(link) in moving), None)
+    if last is None:
+        return np.array([0.0, 0.0, 1.0])
+    name = urdf.joint_above[links[last]]
+    own = np.array([float(part) for part in axis_of(urdf.joints[name]).split()])
+    axis = at[flange].rotation.T @ data.oMi[model.getJointId(name)].rotation @ own
+    for link in links[last:]:
+        ahead = axis @ (at[flange].rotation.T @ (at[flange].translation - at[link].translation))
+        if abs(ahead) > _AHEAD:
+            return np.asarray(axis * np.sign(ahead))
+    return np.asarray(axis)
 
 
 _NO_LIMIT = 1e6  # rad; for those who ask the model itself

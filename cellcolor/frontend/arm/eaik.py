@@ -18,6 +18,7 @@ Newton's method does the rest (:mod:`cellcolor.frontend.arm.calibrated`).
 from __future__ import annotations
 
 import os
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,10 +79,8 @@ class EaikKinematics(InverseKinematics):
         self._set_sizes(axes, poses.tip[0], files)
         tolerance = _TOLERANCE if off is None else 2 * CALIBRATION
         signs = signs_of(robot, self.reach, tolerance)
-        own = {"robot": robot, "closed_form": self._closed_form, "signs": signs}
-        self._solution = (
-            Polished(**own, farthest=_EXACT) if off is None else NearIdeal(**own, off=off)
-        )
+        solved = partial(NearIdeal, off=off) if off else partial(Polished, farthest=_EXACT)
+        self._solution = solved(robot=robot, closed_form=self._closed_form, signs=signs)
         self.branches = () if signs is None else BRANCHES
 
     def _set_sizes(self, axes: Axes, tip: Array, files: RobotFiles) -> None:

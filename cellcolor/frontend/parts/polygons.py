@@ -86,4 +86,4 @@ def _along_face(
     whole = np.zeros((faces, 3))
     np.add.at(whole, of, mesh.area_vectors)
     along = np.einsum("ij,ij->i", mesh.area_vectors, whole[of])
-    return along, np.bincount(of, mesh.areas, faces), np.linalg.norm(whole, axis=1)
+    return along, np.asarray(np.bincount(of, mesh.areas, faces)), np.linalg.norm(whole, axis=1)
