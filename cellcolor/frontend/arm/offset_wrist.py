@@ -260,8 +260,13 @@ class _Search:
         inner = size[:, 1:-1]
         back = (inner <= size[:, 2:]) & (inner <= size[:, :-2]) & (inner < _ALMOST * step)
         row, number, way = np.nonzero(back)
-        for aside in (-step / 2, step / 2):
-            self._near.append((at[row], way, first[row] + step * (number + 1) + aside))
+        center, here = first[row] + step * (number + 1), off[row, number + 1, way]
+        for side in (-1, 1):
+            middle, there = center + side * step / 2, off[row, number + 1 + side, way]
+            value = self._way(at[row], way, middle)
+            self._near.append((at[row], way, middle))
+            self._brackets.append((at[row], way, center, middle, here, value))
+            self._brackets.append((at[row], way, middle, center + side * step, value, there))
 
     def found(self) -> _Columns:
         """Pose, way and turn in rad, (s,) each, at or next to zeros."""
