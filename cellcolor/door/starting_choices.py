@@ -24,6 +24,7 @@ CoverChoice = Literal["largest", "all"]
 
 _TOWARD = np.array([-1.0, 0.0, 1.0]) / np.sqrt(2)  # the part lies before the robot: up and back
 _ALONG = 1e-3  # rad; an axis so near to another one is along it
+_OFF, _MOST_OFF = 1e-6, 1e-3  # m; a flange so far beside the last axis was measured, not meant
 _ANY_WAY = 0.2  # the mean of the unit normals of what faces every way is shorter
 _LARGER = 1.02  # times the inner side's area has a shell's outer one, if it is bent
 _ABOVE = (0.1, 0.15, 0.05, 0.2)  # m; so far over the part the arm waits, the first that is free
@@ -51,9 +52,9 @@ def is_weightless(tool: Urdf) -> bool:
 
 
 def mount_line(arm: Urdf, flange: str, still: Mapping[str, float]) -> str:
-    """The setup's line that turns the tool's z axis onto the last joint's, if it is not there.
+    """The setup's lines that put the tool's z axis onto the last joint's, if it is not there.
 
-    Some vendors' flanges have their x axis along that of the joint.
+    Some vendors' flanges have their x axis along that of the joint, or lie a little beside it.
 
     Args:
         still: the positions of joints that stand still.
@@ -61,15 +62,22 @@ def mount_line(arm: Urdf, flange: str, still: Mapping[str, float]) -> str:
     from cellcolor.frontend.arm.assembly import last_axis
     from cellcolor.frontend.parts.placement import rpy_from_rotation
 
-    x, y, z = last_axis(arm, flange, still)
+    (x, y, z), beside = last_axis(arm, flange, still)
+    lines = ""
+    off = float(np.linalg.norm(beside))
+    if _OFF < off < _MOST_OFF:
+        back = [round(-along, 9) + 0.0 for along in beside.tolist()]
+        lines = (
+            f"mount_position_m = {back}   # the flange is {1e3 * off:.3g} mm off the last axis\n"
+        )
     along = np.hypot(x, y) < _ALONG
     if along and z > 0:
-        return ""
+        return lines
     # Turned about the axis across both.
     cross = np.array([[0, 0, x], [0, 0, y], [-x, -y, 0]])
     onto = np.diag([1, -1, -1]) if along else np.eye(3) + cross + cross @ cross / (1 + z)
     angles = [round(angle, 9) + 0.0 for angle in rpy_from_rotation(onto)]
-    return f"mount_rpy_rad = {angles}   # turns the tool's z axis onto the last joint's\n"
+    return f"{lines}mount_rpy_rad = {angles}   # turns the tool's z axis onto the last joint's\n"
 
 
 def fixed_of(arm: Urdf, flange: str, given: Mapping[str, float]) -> dict[str, float]:
@@ -223,7 +231,7 @@ def _home_over(prepared: PreparedScene) -> tuple[list[float], str] | None:
     nearest: Index = np.argsort(np.linalg.norm(surface.vertices - middle, axis=1))[:3]
     free = FreeSpace(prepared, motion_of(prepared).clearance_m)
     lower, upper = (np.clip(limit, -np.pi, np.pi) for limit in free.space.limits)
-    names = prepared.kinematics.branches if arm.named else ()
+    names = prepared.arm.kinematics.branches if arm.named else ()
     for above in _ABOVE:
         points = surface.vertices[nearest] + above * surface.normals[nearest]
         found = arm.inverse(points, -surface.normals[nearest])

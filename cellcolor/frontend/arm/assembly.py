@@ -168,8 +168,10 @@ def without(
 _AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
 
 
-def last_axis(urdf: Urdf, flange: str, standing: Mapping[str, float]) -> Array:
-    """The last axis (3,) before the flange, in its frame; outward with all joints at zero.
+def last_axis(urdf: Urdf, flange: str, standing: Mapping[str, float]) -> tuple[Array, Array]:
+    """The last axis (3,) before the flange, in its frame, and how far beside it the flange is, m.
+
+    The axis points outward with all joints at zero.
 
     Args:
         standing: see :func:`pinocchio_models`.
@@ -182,15 +184,14 @@ def last_axis(urdf: Urdf, flange: str, standing: Mapping[str, float]) -> Array:
     links = list(reversed(urdf.chain(flange)))
     last = next((k for k, link in enumerate(links) if urdf.joint_above.get(link) in moving), None)
     if last is None:
-        return np.array([0.0, 0.0, 1.0])
+        return np.array([0.0, 0.0, 1.0]), np.zeros(3)
     name = urdf.joint_above[links[last]]
     own = np.array([float(part) for part in axis_of(urdf.joints[name]).split()])
     axis = at[flange].rotation.T @ data.oMi[model.getJointId(name)].rotation @ own
-    for link in links[last:]:
-        ahead = axis @ (at[flange].rotation.T @ (at[flange].translation - at[link].translation))
-        if abs(ahead) > _AHEAD:
-            return np.asarray(axis * np.sign(ahead))
-    return np.asarray(axis)
+    ways = [at[flange].actInv(at[link]).translation for link in links[last:]]
+    beside = (ways[0] @ axis) * axis - ways[0]
+    ahead = next((far for way in ways if abs(far := -axis @ way) > _AHEAD), 1.0)
+    return np.asarray(axis * np.sign(ahead)), np.asarray(beside)
 
 
 _NO_LIMIT = 1e6  # rad; for those who ask the model itself
