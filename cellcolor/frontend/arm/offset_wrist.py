@@ -288,7 +288,8 @@ class _Search:
             low[rows], high[rows] = np.where(same, between, a), np.where(same, b, between)
             at_low[rows] = np.where(same, value, left / 2)
             at_high[rows] = np.where(same, right / 2, value)
-            rows = rows[np.abs(value) > _CLOSE]
+            if step >= _ROUNDS - 1:
+                rows = rows[np.abs(value) > _CLOSE]
         near = zip((at, way, turn), *self._near, strict=True)
         at, way, turn = (np.concatenate(each) for each in near)
         return at, way, turn
