@@ -205,8 +205,7 @@ def arm_of(
     from cellcolor.frontend.arm.assembly import fix_joints
     from cellcolor.frontend.arm.kinematics import forward
     from cellcolor.frontend.arm.urdf import load_urdf
-    from cellcolor.frontend.contact.engine import pairs_of
-    from cellcolor.frontend.reach.always_touching import always_touching
+    from cellcolor.frontend.contact.engine import always_touching, pairs_of
     from cellcolor.frontend.reach.prepared_arm import prepare_arm
 
     arm = load_urdf(urdf)
@@ -311,7 +310,6 @@ def best_place(
     Raises:
         InputError: nothing of it can be reached anywhere.
     """
-    from cellcolor.frontend.parts.placement import Placement
     from cellcolor.frontend.prepared import prepare
     from cellcolor.frontend.scene import Scene
 
@@ -319,7 +317,7 @@ def best_place(
     table["object"]["file"] = str(mesh.resolve())
     scene = Scene(**table | {"setup": arm.setup})
     with naming(mesh):
-        vertices = scene.object.surface(scene.folder, deadline).vertices
+        vertices = scene.placement.placed(scene.object.surface(scene.folder, deadline).vertices)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     middle = (low + high) / 2
     tried: list[_Reached] = []
@@ -333,7 +331,7 @@ def best_place(
     for far, height in product(_FARTHER, heights):
         position = x + far * arm.reach - middle[0], y - middle[1], height
         try:
-            place = Placement(position_m=(np.round(position, 3) + 0.0).tolist())
+            place = scene.placement.varied(position_m=(np.round(position, 3) + 0.0).tolist())
             if prepared is None:
                 prepared = prepare(scene.varied(placement=place), deadline)
             else:

@@ -28,6 +28,7 @@ _TOWARD = np.array([-1.0, 0.0, 1.0]) / np.sqrt(2)  # the part lies before the ro
 _ALONG = 1e-3  # rad; an axis so near to another one is along it
 _AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
 _OFF, _MOST_OFF = 1e-6, 1e-3  # m; a flange so far beside the last axis was measured, not meant
+_UPRIGHT, _AWRY = 0.5, 0.35  # how far the mean of normals leans; rad: less is not turned
 _ANY_WAY = 0.2  # the mean of the unit normals of what faces every way is shorter
 _LARGER = 1.02  # times the inner side's area has a shell's outer one, if it is bent
 _ABOVE = (0.1, 0.15, 0.05, 0.2)  # m; so far over the part the arm waits, the first that is free
@@ -139,10 +140,33 @@ def fixed_line(fixed: Mapping[str, float]) -> str:
 
 @dataclass(frozen=True)
 class Side:
-    """Which side of the part is covered: what is filled into the scene's text, and what to say."""
+    """Which side of the part is covered.
+
+    Attributes:
+        keys: what is filled into the scene's text.
+        note: what to say.
+    """
 
     keys: dict[str, str]
     note: str
+
+
+def _chosen(
+    keys: dict[str, str], note: str, mean: Array | None = None, outside: Outside | None = None
+) -> Side:
+    """The side, and how far it is turned about the vertical so that it faces the robot.
+
+    Args:
+        mean: of its normals (3,), if it has to face the robot; not if it is to face ``away``.
+    """
+    yaw = 0.0
+    if mean is not None and outside != "away" and np.hypot(mean[0], mean[1]) > _UPRIGHT:
+        yaw = round(float(np.angle(-(mean[0] - 1j * mean[1]))), 4) + 0.0
+        if abs(yaw) > _AWRY:
+            note += f"; turned by {np.degrees(yaw):.0f} degrees, it faces the robot"
+        else:
+            yaw = 0.0
+    return Side(keys | {"rpy": json.dumps([0.0, 0.0, yaw])}, note)
 
 
 def side_of(surface: Surface, outside: Outside | None, cover: CoverChoice | None) -> Side:
@@ -164,10 +188,12 @@ def side_of(surface: Surface, outside: Outside | None, cover: CoverChoice | None
     sides = None if thick is None else shell_sides(mesh)
     if thick is not None and sides is not None and cover != "all":
         number, name, other = _side(mesh, sides, outside)
-        return Side(
+        return _chosen(
             {"flip": "", "cover": _cover(mesh, sides[number])},
             f"the part is a shell, {1e3 * thick:.2g} mm thick: its {name} is covered ({other} for "
             "the other one, --cover all for both)",
+            facing(mesh, sides[number]),
+            outside,
         )
     flip = _flipped(mesh, outside)
     mean = facing(mesh) * (-1 if flip else 1)
@@ -185,7 +211,7 @@ def side_of(surface: Surface, outside: Outside | None, cover: CoverChoice | None
         note += f"; {wound} faces {_way(mean)} ({other} for the other side)"
     elif thick is not None:
         note += f", both sides of a shell {1e3 * thick:.2g} mm thick ([cover] chooses one)"
-    return Side(keys, note)
+    return _chosen(keys, note, mean if mesh.border.any() else None, outside)
 
 
 def _side(mesh: TriangleMesh, sides: list[Mask], outside: Outside | None) -> tuple[int, str, str]:
@@ -265,7 +291,7 @@ def _home_over(prepared: PreparedScene) -> tuple[list[float], str] | None:
     nearest: Index = np.argsort(np.linalg.norm(surface.vertices - middle, axis=1))[:3]
     free = FreeSpace(prepared, motion_of(prepared).clearance_m)
     lower, upper = (np.clip(limit, -np.pi, np.pi) for limit in free.space.limits)
-    names = prepared.kinematics.branches if arm.named else ()
+    names = prepared.arm.kinematics.branches if arm.named else ()
     for above in _ABOVE:
         points = surface.vertices[nearest] + above * surface.normals[nearest]
         found = arm.inverse(points, -surface.normals[nearest])

@@ -364,6 +364,19 @@ def test_under_an_arm_that_hangs(plate: Path, tmp_path: Path) -> None:
     assert 1.9 < Scene.read(made.scene).placement.position_m[2] < 2.7
 
 
+@pytest.mark.parametrize(("yaw", "turned"), [(90, True), (180, False), (-90, True), (0, True)])
+def test_an_upright_part_is_turned_to_the_robot(
+    yaw: float, turned: bool, plate: Path, tmp_path: Path, capsys: Capture
+) -> None:
+    mesh = trimesh.load_mesh(plate)
+    mesh.apply_transform(trimesh.transformations.euler_matrix(0, np.pi / 2, np.radians(yaw)))
+    mesh.export(tmp_path / "upright.stl")
+    printed = new(capsys, tmp_path / "upright.stl", ROBOTS / "ur5.urdf", tmp_path / "new")
+    assert ("turned by" in printed) == turned
+    normals = prepare(Scene.read(tmp_path / "new" / "scene.toml")).surface.normals
+    assert np.allclose(normals.mean(axis=0)[[0, 1]], [-1, 0], atol=0.1)
+
+
 def test_the_home_is_over_the_part_and_well_conditioned(plate: Path, tmp_path: Path) -> None:
     made = cellcolor.new(plate, ROBOTS / "ur5e.urdf", tmp_path / "new")
     prepared = prepare(made.scene)
