@@ -150,7 +150,7 @@ def _coverage(report: MotionReport) -> Card | None:
         ("of the area with a color", f"{1e4 * covered.reachable_m2:.0f} cm²"),
         (f"within {1.5 * spacing:g} mm of a pass", _percent(covered.covered_share)),
         (f"within {0.75 * spacing:g} mm of a pass", _percent(covered.closely_covered_share)),
-        ("left out, rightly", _percent(covered.left_out_share)),
+        ("left out, the arm cannot reach it", _percent(covered.left_out_share)),
         ("uncovered without a reason", f"{1e4 * covered.uncovered_m2:.1f} cm²"),
         ("visits, mean and most", f"{covered.mean_visits:.2f}, {covered.most_visits}"),
         ("along earlier passes", f"{covered.repeated_m:.2f} of {covered.length_m:.2f} m"),
