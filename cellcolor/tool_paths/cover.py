@@ -126,7 +126,7 @@ def cover(
     return Covered(
         ToolPaths(surface.name, pattern, spacing_m, tool_radius_m, tuple(paths), surface.sha256),
         tuple(measures),
-        in_all(measures, spacing_m),
+        in_all(measures),
         tuple(uncovered),
         tuple(along_border),
     )

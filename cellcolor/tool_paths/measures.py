@@ -14,7 +14,6 @@ from cellcolor.tool_paths.triangles import Triangles
 
 _SAMPLES = 4000  # at which visits are counted, for one path
 _FINE = 8  # samples of the path on each spacing
-_SHARP = np.cos(np.radians(60.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,10 +49,6 @@ class PathMeasures:
         covered: share of the area within 0.75 spacings of it.
         mean_visits: passes within half a spacing of a point, in the mean over the area. A pass
             is a stretch of path that long as it stays so near.
-        most_visits: the greatest number of these passes.
-        density: length x spacing / area; 1 where nothing is covered twice.
-        sharp_turns: share of the path's inner points at which it turns by over 60 degrees.
-        longest_step_m: between two points of the path.
         border_m: length of the covered part's border.
     """
 
@@ -62,36 +57,25 @@ class PathMeasures:
     covered_wide: float
     covered: float
     mean_visits: float
-    most_visits: int
-    density: float
-    sharp_turns: float
-    longest_step_m: float
     border_m: float
 
     def __str__(self) -> str:
-        visits = f"{self.mean_visits:.2f} visits ({self.most_visits} at most)"
+        visits = f"{self.mean_visits:.2f} visits"
         return f"{self.length_m:.2f} m, {100 * self.covered:.2f} % covered, {visits}"
 
 
 def measure(line: Line, segment: int, spacing: float) -> tuple[PathMeasures, list[Uncovered]]:
     """Measure a path, and find what it leaves uncovered."""
     mesh = line.mesh
-    steps = np.diff(line.points, axis=0)
-    lengths = np.linalg.norm(steps, axis=1)
     distances = mesh.distances_from(*_beside(line))
     areas = mesh.vertex_areas
     area = float(areas.sum())
-    visits = visits_of(line, spacing)
     measures = PathMeasures(
         area,
-        float(lengths.sum()),
+        float(np.linalg.norm(np.diff(line.points, axis=0), axis=1).sum()),
         share_within(mesh, distances, 1.5 * spacing),
         share_within(mesh, distances, 0.75 * spacing),
-        float(visits.mean()),
-        int(visits.max()),
-        float(lengths.sum() * spacing / area),
-        sharp_turns(steps),
-        float(lengths.max()),
+        float(visits_of(line, spacing).mean()),
         float(mesh.lengths[mesh.triangles_at == 1].sum()),
     )
     far = distances > 0.75 * spacing
@@ -120,15 +104,6 @@ def share_within(mesh: Triangles, distances: Array, most: float) -> float:
     share = np.where(most < middle, below, above)
     share = np.where(most <= low, 0.0, np.where(most >= high, 1.0, share))
     return min(1.0, float(np.average(share, weights=mesh.areas)))
-
-
-def sharp_turns(steps: Array) -> float:
-    """Share of the inner points of a path at which it turns by over 60 degrees."""
-    lengths = np.linalg.norm(steps, axis=1)
-    steps = steps[lengths > 0] / lengths[lengths > 0][:, None]
-    if len(steps) < 2:
-        return 0.0
-    return float(((steps[:-1] * steps[1:]).sum(axis=1) < _SHARP).mean())
 
 
 def _beside(line: Line) -> tuple[Index, Array]:
@@ -177,22 +152,20 @@ def _sampled(points: Array, normals: Array, longest: float) -> tuple[Array, Arra
     )
 
 
-def in_all(measures: list[PathMeasures], spacing: float) -> PathMeasures:
+def in_all(measures: list[PathMeasures]) -> PathMeasures:
     """The measures of several paths together; shares and means are weighed by area."""
     if not measures:
-        return PathMeasures(0.0, 0.0, 1.0, 1.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0)
-    area = sum(one.area_m2 for one in measures)
-    length = sum(one.length_m for one in measures)
-    areas, lengths = [one.area_m2 for one in measures], [one.length_m for one in measures]
+        return PathMeasures(0.0, 0.0, 1.0, 1.0, 0.0, 0.0)
+    areas = [one.area_m2 for one in measures]
+
+    def mean(name: str) -> float:
+        return float(np.average([getattr(one, name) for one in measures], weights=areas))
+
     return PathMeasures(
-        area,
-        length,
-        float(np.average([one.covered_wide for one in measures], weights=areas)),
-        float(np.average([one.covered for one in measures], weights=areas)),
-        float(np.average([one.mean_visits for one in measures], weights=areas)),
-        max(one.most_visits for one in measures),
-        length * spacing / area,
-        float(np.average([one.sharp_turns for one in measures], weights=lengths)),
-        max(one.longest_step_m for one in measures),
+        sum(areas),
+        sum(one.length_m for one in measures),
+        mean("covered_wide"),
+        mean("covered"),
+        mean("mean_visits"),
         sum(one.border_m for one in measures),
     )

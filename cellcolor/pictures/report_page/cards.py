@@ -156,14 +156,6 @@ def _coverage(report: MotionReport) -> Card | None:
         ("along earlier passes", f"{covered.repeated_m:.2f} of {covered.length_m:.2f} m"),
         ("length × spacing / area", f"{covered.length_times_spacing_per_area:.2f}"),
     ]
-    if report.measures:
-        sharp = sum(own.sharp_turns * own.length_m for own in report.measures)
-        length = sum(own.length_m for own in report.measures)
-        longest = 1e3 * max(own.longest_step_m for own in report.measures)
-        rows += [
-            ("turns over 60°", f"{_percent(sharp / length if length else 0)} of path points"),
-            ("longest step of a path", f"{longest:.1f} mm"),
-        ]
     return Card("Coverage", (text,), (("", ""), *rows))
 
 
