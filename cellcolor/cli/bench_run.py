@@ -91,7 +91,8 @@ def run_solvers(
         say_lines("\n".join(summary_of_runs(made)))
     already = f", {sweep.skipped} left out or already there" if sweep.skipped else ""
     proved = sum(row.solved for row in made)
-    say(f"{count(len(made), 'run')}, {proved} with a proved minimum{already}")
+    if made or not bad:  # otherwise what is wrong is all there is to say
+        say(f"{count(len(made), 'run')}, {proved} with a proved minimum{already}")
     for line in wrong:
         complain(line)
     if bad:

@@ -105,7 +105,7 @@ class UnfinishedPlan:
 
         return render_report(self._report())
 
-    def _files(self, export_step_s: float | None = None) -> dict[str, bytes]:  # noqa: ARG002
+    def files(self, export_step_s: float | None = None) -> dict[str, bytes]:  # noqa: ARG002
         """All files but the page, by name, as far as the plan came."""
         surface, decomposition = self.subject.surface, self.subject.decomposition
         reference = SurfaceReference(SURFACE, tuple(decomposition.vertex_cell), surface.sha256)
@@ -141,7 +141,7 @@ class UnfinishedPlan:
             InputError: a plan that got further is there, or something else that is not
                 overwritten; or it cannot be written.
         """
-        return save(path_of(folder), self._files(export_step_s) | {"report.html": self.page()})
+        return save(path_of(folder), self.files(export_step_s) | {"report.html": self.page()})
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.missing}>"
@@ -156,6 +156,7 @@ class PlannedScene(UnfinishedPlan):
         verdict: an independent judge's.
         seconds: wall time of each stage.
         answered: what was asked besides, for the page; None if nothing was.
+        made: the contents of all files but the page, if they are made already.
     """
 
     result: Result
@@ -166,6 +167,7 @@ class PlannedScene(UnfinishedPlan):
     verdict: TrajectoryVerdict
     seconds: Mapping[str, float]
     answered: AnsweredScene | None = None
+    made: Mapping[str, bytes] | None = None
 
     @property
     def solution(self) -> Solution:
@@ -218,9 +220,12 @@ class PlannedScene(UnfinishedPlan):
             part=prepared.scene.placement.matrix,
         )
 
-    def _files(self, export_step_s: float | None = None) -> dict[str, bytes]:
+    def files(self, export_step_s: float | None = None) -> dict[str, bytes]:
+        if self.made is not None:
+            again = {} if export_step_s is None else exported(self._motion(export_step_s))
+            return {**self.made, **again}
         return {
-            **super()._files(),
+            **super().files(),
             "trajectory.json": self.trajectory.to_json().encode(),
             "verdict.json": self.verdict.to_json().encode(),
             **exported(self._motion(export_step_s)),

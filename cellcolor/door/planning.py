@@ -116,12 +116,7 @@ def plan(
     except OutOfTime as error:
         unasked = tuple(f"{name}: not asked, the time limit came first" for name in ask)
         raise PlanOutOfTime(replace(run.so_far, unanswered=unasked)) from error
-    answered: AnsweredScene | None = None
-    unanswered: tuple[str, ...] = ()
-    if ask:
-        with clock.timed("questions"):
-            answered, unanswered = _answered(ask, whole, deadline, progress)
-    return PlannedScene(
+    planned = PlannedScene(
         best.subject,
         best.result,
         best.painting.painted,
@@ -130,9 +125,16 @@ def plan(
         best.planned.trajectory,
         verdict,
         clock.seconds,
-        answered,
-        unanswered=unanswered,
     )
+    if not ask:
+        return planned
+    with clock.timed("files"):
+        files = planned.files()
+    # The page is made after the answers, in less time than all other files have taken.
+    in_time = deadline.earlier(clock.seconds["files"])
+    with clock.timed("questions"):
+        answered, unanswered = _answered(ask, whole, in_time, progress)
+    return replace(planned, answered=answered, unanswered=unanswered, made=files)
 
 
 class _Run:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import html
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import NamedTuple
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.shares import BASES, segment_rows, shares_of
@@ -18,20 +17,6 @@ from cellcolor.files.paths import path_of
 from cellcolor.files.writing import Output, write
 
 
-class GapStep(NamedTuple):
-    """What was known at one moment of a search.
-
-    Attributes:
-        seconds: since the search began.
-        segments: of the best division by then; None before there was one.
-        lower_bound: no division in the search space has fewer.
-    """
-
-    seconds: float
-    segments: int | None
-    lower_bound: int
-
-
 @dataclass(frozen=True, repr=False)
 class Result(Drawn):
     """The fewest segments that were found, and what is proved about them.
@@ -41,13 +26,11 @@ class Result(Drawn):
         subject: what was solved, opened.
         covered_share: what was solved, as a share of the area that can be covered and is not left
             alone, 0 to 1.
-        gap: how best division and bound met over time, the last step at the end of the search.
     """
 
     solution: Solution
     subject: Subject = field(hash=False)
     covered_share: float = 1.0
-    gap: tuple[GapStep, ...] = field(default=(), compare=False)
 
     @property
     def instance(self) -> Instance:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 import tomllib
@@ -48,9 +49,13 @@ _NEEDED = ("pinocchio", "fcl", "igl", "trimesh", "scipy")
 _JOINTS, _ACCELERATION = 6, 5.0  # rad/s^2, which most arms of a meter can
 _JERK = 1000.0  # rad/s^3, an example
 _MOST_ASKED = 300  # vertices of the part, wherever it is tried
+_EDGES_M, _VERTICES = (0.01, 0.1), 2500  # the longest edges: as long as gives so many vertices
 _FARTHER, _HIGHER = (0.45, 0.6, 0.75), (0.02, 0.2, 0.4)
 """Places that are tried: of the part's middle before the robot, and of its lowest point above the
 ground, as shares of the arm's reach."""
+_UP, _BELOW = 0.6, (0.8, 0.6, 0.4)
+"""An arm whose first joint is higher than the first share hangs, or stands on something. Then the
+part's highest point lies so far below that joint."""
 
 _FILE = FileKind("a file begun by cellcolor new", re.compile(re.escape(MARK).encode()))
 _TOOL_FILE = FileKind("a tool begun by cellcolor new", re.compile(rb"<!-- begun by cellcolor new"))
@@ -130,7 +135,8 @@ def new(
     tell("where the part can stand")
     best, share = best_place(robot, mesh, part_keys, deadline)
     home, posture = home_of(best)
-    robot.keys.update(_found(best, home))
+    edge = float(part_keys["max_edge"])
+    robot.keys.update(_found(best, home), spacing=f"{edge / 10:g}")
     part_keys["position"] = json.dumps(list(best.scene.placement.position_m))
     content = {
         "setup.toml": Template(SETUP).substitute(robot.keys),
@@ -139,7 +145,12 @@ def new(
     }
     place.mkdir(parents=True, exist_ok=True)
     write([Output(place / name, kinds[name], [content[name].encode()]) for name in names])
-    assumed = (f"unit {looked.unit}: {looked.unit_reason}", side, posture)
+    count = len(best.surface.vertices)
+    size = f"its mesh has {count:,} vertices, with edges up to {1e3 * edge:g} mm (max_edge_m)"
+    if count > 2 * _VERTICES:
+        even = f"cellcolor repair {mesh} -o {mesh.stem}.obj --edge-length {edge:g}"
+        size += f"; fewer suffice, since its triangles are long and thin or very small: {even}"
+    assumed = (f"unit {looked.unit}: {looked.unit_reason}", side, size, posture)
     return Started(place / "scene.toml", share, (*assumed, *_notes(best, robot, tool is None)))
 
 
@@ -154,7 +165,7 @@ class FoundArm:
         reach: of the arm, m.
         touching: pairs of its links that overlap in every posture.
         fixed: positions of joints that stand still, rad or m.
-        base_m: x and y of its first joint in the world.
+        base_m: its first joint in the world.
     """
 
     urdf: Path
@@ -163,7 +174,7 @@ class FoundArm:
     reach: float = 0.0
     touching: tuple[tuple[str, str], ...] = ()
     fixed: Mapping[str, float] = field(default_factory=dict)
-    base_m: tuple[float, float] = (0.0, 0.0)
+    base_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def setup(self) -> Setup:
@@ -212,6 +223,7 @@ def arm_of(
         "force": "false" if weightless else "true",
         "why_force": "a URDF lacks masses or efforts" if weightless else "true or false",
         "touching": "[]",
+        "spacing": "0.001",
         "velocities": "",
         "accelerations": json.dumps([_ACCELERATION] * _JOINTS),
         "jerks": json.dumps([_JERK] * _JOINTS),
@@ -231,9 +243,9 @@ def arm_of(
             continue
         touching = json.dumps([list(pair) for pair in pairs])
         robot = prepared.robot
-        x, y, _ = forward(robot, np.zeros((1, robot.joints))).origin[0, 1].tolist()
+        x, y, z = forward(robot, np.zeros((1, robot.joints))).origin[0, 1].tolist()
         keys = found.keys | {"touching": touching}
-        return FoundArm(urdf, tool, keys, reach, pairs, fixed, (x, y))
+        return FoundArm(urdf, tool, keys, reach, pairs, fixed, (x, y, z))
     fault = faults[1] if faults[1].file else faults[1].in_file(str(urdf))
     if "fixed_joints" in fault.message + (fault.field or ""):
         raise InputError(fault.file, fault.field, f"{fault.message} (here: --fix JOINT=POSITION)")
@@ -261,12 +273,17 @@ def part_keys_of(
     if looked.refusal_after_repair is not None:
         raise InputError(str(mesh), None, looked.refusal_after_repair)
     unit = UNITS[looked.unit]
-    side = side_of(load_mesh(mesh, unit, mend=bool(looked.repairs)), outside, cover)
+    surface = load_mesh(mesh, unit, mend=bool(looked.repairs))
+    side = side_of(surface, outside, cover)
+    # Halved edges are 0.7 of the longest in the mean, and there are two triangles a vertex.
+    edge = math.ceil(1e3 * math.sqrt(surface.mesh.areas.sum() / (0.42 * _VERTICES))) / 1e3
+    least, most = _EDGES_M
     keys = {
         "name": json.dumps(mesh.stem),
         "part": json.dumps(_relative(mesh, folder)),
         "meters_per_unit": str(unit),
         "repair": "true" if looked.repairs else "false",
+        "max_edge": str(min(max(least, edge), most)),
     }
     return keys | side.keys, side.note
 
@@ -295,9 +312,12 @@ def best_place(
     prepared: PreparedScene | None = None
     fault: InputError | None = None
     failed: Counter[str] = Counter()
-    for far, raised in product(_FARTHER, _HIGHER):
-        ahead, beside = arm.base_m[0] + far * arm.reach, arm.base_m[1]
-        position = ahead - middle[0], beside - middle[1], raised * arm.reach - low[2]
+    x, y, z = arm.base_m
+    heights = [share * arm.reach - low[2] for share in _HIGHER]
+    if z > _UP * arm.reach:
+        heights = [max(z - share * arm.reach - high[2], -low[2]) for share in _BELOW]
+    for far, height in product(_FARTHER, heights):
+        position = x + far * arm.reach - middle[0], y - middle[1], height
         try:
             place = Placement(position_m=(np.round(position, 3) + 0.0).tolist())
             if prepared is None:

@@ -1,45 +1,17 @@
-"""Curves and bars with Matplotlib: searches, fronts."""
+"""Fronts of lift-offs and area, with Matplotlib."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping, Sequence
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
-from cellcolor.pictures.palette import FAINT, INK, LINES
+from cellcolor.pictures.palette import INK, LINES
 from cellcolor.pictures.static import saved
 from cellcolor.questions.front import Front
 
 _STYLE = {"font.size": 9, "svg.fonttype": "none", "svg.hashsalt": "cellcolor"}
-
-
-def render_search(
-    title: str, curves: Mapping[str, Sequence[tuple[float, int]]], kind: str
-) -> bytes:
-    """Segments over the seconds of a search, as steps; the same curves give the same bytes.
-
-    Args:
-        curves: seconds and segments of each, by its name.
-        kind: ``png`` or ``svg``.
-    """
-    with mpl.rc_context(_STYLE):
-        figure, axes = _figure()
-        for number, (name, points) in enumerate(curves.items()):
-            style = "--" if number >= len(LINES) else "-"
-            seconds, segments = zip(*points, strict=True) if points else ((), ())
-            color = LINES[number % len(LINES)]
-            axes.step(seconds, segments, where="post", color=color, linestyle=style, label=name)
-        axes.set_title(title, loc="left")
-        axes.set_xlabel("seconds of the search")
-        axes.set_ylabel("segments")
-        axes.yaxis.set_major_locator(MaxNLocator(integer=True))
-        axes.grid(True, color=FAINT, linewidth=0.5)
-        figure.legend(loc="outside right upper", frameon=False, fontsize=8)
-        return saved(figure, kind)
 
 
 def render_front(front: Front, kind: str) -> bytes:

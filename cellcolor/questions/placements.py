@@ -38,8 +38,8 @@ def pose_document(pose: Pose) -> dict[str, list[float]]:
 
 
 def _most_common(reasons: Counter[str]) -> str:
-    """The commonest reasons, each with its number, as in "nothing is reached: 5"."""
-    listed = [f"{reason}: {number}" for reason, number in reasons.most_common(_FEW)]
+    """The commonest reasons, each with its number, as in "it would stand in the ground (5)"."""
+    listed = [f"{reason} ({number})" for reason, number in reasons.most_common(_FEW)]
     return "; ".join(listed) + "; …" * (len(reasons) > _FEW)
 
 
@@ -209,7 +209,8 @@ class PlacedMinimum:
             number = f"at least {count(least, 'lift-off')}, " if least else ""
             return f"{place}: {number}at most {area}"
         if self.lift_offs is None:
-            return f"{place}: {self.refused or 'not solved in time'}"
+            why = f"the part cannot stand there: {self.refused}"
+            return f"{place}: {why if self.refused else 'not solved in time'}"
         proof = "" if self.proved_for_surface else " (not proved)"
         number = count(self.lift_offs, "lift-off")
         return f"{place}: {number}{proof}, {area}"
@@ -254,14 +255,12 @@ class Placements:
         asked = f"{100 * self.cover:.1f} % of the area"
         if not enough:
             lines.append(f"  no placement that was tried covers {asked}{self._most()}")
-        refused = Counter(row.refused for row in self.tried if row.refused)
         tried = count(len(self.tried), "placement")
-        why = f" ({_most_common(refused)})" if refused else ""
         bounded = sum(row.at_least > 0 for row in self.tried)
-        lines.append(
-            f"  {tried} tried that had to cover {asked}, {refused.total()} of them refused{why}, "
-            f"{bounded} left aside by bounds"
-        )
+        lines.append(f"  {tried} tried that had to cover {asked}, {bounded} left aside by bounds")
+        if refused := Counter(row.refused for row in self.tried if row.refused):
+            why = _most_common(refused)
+            lines.append(f"  in {refused.total()} of them the part cannot stand: {why}")
         if not self.complete:
             lines.append("  the time limit came before everything was tried")
         return "\n".join(lines)

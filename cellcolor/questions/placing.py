@@ -34,7 +34,7 @@ from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 
 _FITTED = 4  # times that a displacement is scaled; a turn moves points along arcs
-_NOTHING = "nothing is reached"
+_NOTHING = "the arm reaches nothing of it"
 _FINE_ENOUGH = 1.5  # times the vertices that are wanted; a mesh up to there is not made coarser
 
 
@@ -197,7 +197,7 @@ def minima_at(
             elif within is None:
                 rows.append(_bounds(there, pose, cover or 0.0, deadline))
             else:
-                rows.append(PlacedMinimum(pose, None, 0.0, False, 0, f"stands in {within}"))
+                rows.append(PlacedMinimum(pose, None, 0.0, False, 0, f"it would stand in {within}"))
         except OutOfTime:
             break
         except InputError as error:

@@ -144,6 +144,9 @@ class TestRun:
         assert "1 run, 1 with a proved minimum" in out
         assert "left out: the solver clingo is not installed: pip install" in err
         assert len(err.splitlines()) == 2 and str(bad) in err
+        assert run("bench", "run", bad) == 2
+        out, err = capsys.readouterr()
+        assert not out and len(err.splitlines()) == 1 and str(bad) in err
 
     @pytest.mark.usefixtures("fakes")
     def test_a_bound_that_another_solver_beats(self, tmp_path: Path, capsys: Capture) -> None:

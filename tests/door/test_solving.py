@@ -211,15 +211,6 @@ def test_options_reach_the_solver() -> None:
     assert seen and seen[-1][0] == 15
 
 
-def test_a_start_is_a_solution_of_the_same_instance(tmp_path: Path) -> None:
-    first = cellcolor.solve("ring")
-    first.save(tmp_path / "s.json")
-    for start in (first, first.solution, tmp_path / "s.json", str(tmp_path / "s.json")):
-        assert cellcolor.solve("ring", start=start).segments == 2
-        with pytest.raises(InputError, match="is not valid"):
-            cellcolor.solve("split-cell", start=start)
-
-
 def test_check_finds_what_is_wrong() -> None:
     found = cellcolor.solve("ring")
     assert str(cellcolor.check("ring", found)) == "valid: 2 segments"

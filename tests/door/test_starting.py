@@ -103,6 +103,18 @@ def test_the_tool_is_turned_onto_the_last_axis(rpy: tuple[float, float, float], 
     assert np.allclose(tool, [outward, 0, 0], atol=2e-3)
 
 
+def test_a_flange_measured_beside_the_last_axis_is_moved_onto_it(
+    plate: Path, tmp_path: Path
+) -> None:
+    """As in KUKA's KR 210 L150 of ROS-Industrial, whose flange is 0.24 mm off."""
+    text = (ROBOTS / "kr6.urdf").read_text()
+    usual = '<origin xyz="0 0 0" rpy="0 1.570796326794897 0"/>'
+    arm = tmp_path / "arm.urdf"
+    arm.write_text(text.replace(usual, usual.replace("0 0 0", "0.03 0 -0.00024", 1)))
+    scene = Scene.read(cellcolor.new(plate, arm, tmp_path / "new").scene)
+    assert scene.setup.robot.mount_position_m == pytest.approx((-0.00024, 0, 0))
+
+
 def test_an_arm_with_an_offset_wrist_is_known(tmp_path: Path) -> None:
     file = tmp_path / "arm.urdf"
     file.write_text(dh_arms.urdf("hc10"))
@@ -246,6 +258,16 @@ def test_the_largest_piece_of_a_block(tmp_path: Path, capsys: Capture) -> None:
     assert surface.mesh.areas.sum() == pytest.approx(0.2 * 0.15)
 
 
+def test_a_large_part_gets_a_mesh_of_some_thousand_vertices(
+    tmp_path: Path, capsys: Capture
+) -> None:
+    """A door of 1 m^2 with edges of 10 mm has 40,000 vertices, and its build takes half an hour."""
+    trimesh.creation.box((1000, 900, 50)).export(tmp_path / "door.stl")
+    said = new(capsys, tmp_path / "door.stl", ROBOTS / "ur5.urdf", tmp_path / "new")
+    found = re.search(r"its mesh has ([\d,]+) vertices, with edges up to", said)
+    assert found and 1500 < int(found[1].replace(",", "")) < 5000
+
+
 def test_a_closed_part_has_its_outside(tmp_path: Path, capsys: Capture) -> None:
     trimesh.creation.icosphere(2, 100).export(tmp_path / "ball.stl")
     arm = ROBOTS / "ur5.urdf"
@@ -302,6 +324,18 @@ def test_a_joint_that_cannot_stand_there(
     assert run("new", plate, on_rail, "-o", tmp_path / "new", "--fix", fix) == 2
     assert message in capsys.readouterr().err
     assert not (tmp_path / "new").exists()
+
+
+def test_under_an_arm_that_hangs(plate: Path, tmp_path: Path) -> None:
+    """The part lies below its base, not above the ground far below."""
+    text = (ROBOTS / "ur5.urdf").read_text()
+    hung = '<joint name="hung" type="fixed"><parent link="roof"/><child link="base_link"/>'
+    hung += '<origin xyz="0 0 3" rpy="3.14159265 0 0"/></joint><link name="roof"/></robot>'
+    arm = tmp_path / "arm.urdf"
+    arm.write_text(text.replace("</robot>", hung))
+    made = cellcolor.new(plate, arm, tmp_path / "new")
+    assert made.reachable_share > 0.9
+    assert 1.9 < Scene.read(made.scene).placement.position_m[2] < 2.7
 
 
 def test_the_home_is_over_the_part_and_well_conditioned(plate: Path, tmp_path: Path) -> None:

@@ -192,7 +192,11 @@ def test_a_part_does_not_stand_in_the_ground_or_in_an_obstacle() -> None:
         (0.465, -0.15, -0.04, 0.0, 0.0, 0.0),
     ]
     rows = minima_at(scene, poses, np.inf, 1, 0)
-    assert [row.refused for row in rows] == ["stands in the ground", "stands in obstacle 1", ""]
+    assert [row.refused for row in rows] == [
+        "it would stand in the ground",
+        "it would stand in obstacle 1",
+        "",
+    ]
 
 
 def test_where_the_scene_has_it_in_the_base_the_share_has_to_be_said() -> None:
@@ -266,6 +270,21 @@ def test_how_far_a_placement_may_be_off(monkeypatch: pytest.MonkeyPatch) -> None
         assert row.leeway.fails_m is None and row.leeway.tried == 6
     assert row.leeway.holds_m == holds and row.leeway.least_share == min(shares)
     assert str(row.leeway) in str(found)
+
+
+def test_why_the_part_cannot_stand_somewhere_is_said() -> None:
+    """Counted by hand: two in the ground, one in an obstacle."""
+    stands = PlacedMinimum((0.4, 0, 0, 0, 0, 0), 2, 0.9, True, 80)
+    no = [
+        PlacedMinimum((x, 0, 0, 0, 0, 0), None, 0.0, False, 0, f"it would stand in {what}")
+        for x, what in enumerate(("the ground", "obstacle 1", "the ground"))
+    ]
+    text = str(Placements("part", 0.9, no[0], (stands,), tuple(no)))
+    assert "(0, 0, 0) m: the part cannot stand there: it would stand in the ground" in text
+    assert text.endswith(
+        "  in 3 of them the part cannot stand: it would stand in the ground (2); "
+        "it would stand in obstacle 1 (1)"
+    )
 
 
 @examples(50)
