@@ -265,7 +265,7 @@ def _home_over(prepared: PreparedScene) -> tuple[list[float], str] | None:
     nearest: Index = np.argsort(np.linalg.norm(surface.vertices - middle, axis=1))[:3]
     free = FreeSpace(prepared, motion_of(prepared).clearance_m)
     lower, upper = (np.clip(limit, -np.pi, np.pi) for limit in free.space.limits)
-    names = prepared.kinematics.branches if arm.named else ()
+    names = prepared.arm.kinematics.branches if arm.named else ()
     for above in _ABOVE:
         points = surface.vertices[nearest] + above * surface.normals[nearest]
         found = arm.inverse(points, -surface.normals[nearest])

@@ -105,7 +105,7 @@ meters_per_unit = $meters_per_unit              # 0.001 for a file in millimeter
 max_edge_m = $max_edge                   # longer edges are halved; finer meshes take longer
 repair = $repair
 $flip$cover
-# Put where most of the part was found to be reachable, of nine places before the robot.
+# Put where the arm reaches the part best, of nine places before the robot.
 [placement]
 position_m = $position              # of the file's origin, from the robot's root link
 rpy_rad = [0.0, 0.0, 0.0]           # extrinsic x, y, z

@@ -30,6 +30,7 @@ from cellcolor.frontend.parts.part import PARTS, Part
 from cellcolor.frontend.parts.placement import Placement, Tolerance, rotation_from_rpy
 from cellcolor.frontend.parts.rounding import rounded
 from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.reach.validity import STANDARD_REASONS
 from cellcolor.frontend.reach.validity_tests import VALIDITY_TESTS, ValidityTest
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.tables import Coordinate, FileTable, Table, Vector, of_kind
@@ -137,6 +138,14 @@ class Scene(FileTable):
                 if getattr(self.object, key, None):
                     message = f"cannot be combined with {key}, which numbers the faces anew"
                     raise InputError(None, "cover.faces_file", message)
+        return self
+
+    @model_validator(mode="after")
+    def _tests_of_other_names(self) -> Self:
+        for number, test in enumerate(self.validity_test):
+            if test.name in STANDARD_REASONS:
+                message = f"there is a reason {test.name!r} already"
+                raise InputError(None, f"validity_test[{number}]", message)
         return self
 
     @property

@@ -14,7 +14,7 @@ from cellcolor.decomposition import Decomposition
 from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult
-from cellcolor.frontend.reach.validity import Candidates
+from cellcolor.frontend.reach.validity import Verdicts
 from cellcolor.motion.following import joint_space
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.preferring import cost_of, preferred
@@ -48,7 +48,7 @@ def with_best_posture(
     home = None if motion is None or motion.home is None else np.array(motion.home)
     if home is None or prefer.posture == "well-conditioned":
         branch = np.array(built.color_branch, dtype=np.intp)
-        costs = color_costs(built.robot, built.stages.candidates)[:, branch]
+        costs = color_costs(built.robot, built.verdicts)[:, branch]
     else:
         costs = _from_home(built, home)
     instance = decomposition.instance
@@ -107,19 +107,29 @@ def _from_home(built: BuildResult, home: Array) -> Array:
     return np.asarray(np.nan_to_num(np.array(found).reshape(len(found), -1).T))
 
 
-def color_costs(robot: Robot, candidates: Candidates) -> Array:
+def color_costs(robot: Robot, candidates: Verdicts) -> Array:
     """How badly conditioned the arm is in each candidate (n, branches), from 0, best, to 1.
 
     Two things count, and the worse of them: the task determinant as a share of the greatest one on
-    this surface, and how far the joint that is nearest to its limits is from them, as a share of a
-    quarter turn, or of a quarter of the way between them if it is prismatic. Joints may be turned
-    by full circles. Candidates that are not valid cost 1.
+    this surface, and :func:`joint_room`. Candidates that are not valid cost 1.
     """
     valid = candidates.valid
     determinants = np.where(valid, candidates.determinants, 0.0)
     greatest = float(determinants.max(initial=0.0))
     good = determinants / greatest if greatest else determinants
     joints = np.where(valid[:, :, None], candidates.configurations, 0.0)
+    return np.asarray(np.where(valid, 1.0 - np.minimum(good, joint_room(robot, joints)), 1.0))
+
+
+def joint_room(robot: Robot, joints: Array) -> Array:
+    """How far the joint that is nearest to its limits is from them, (…,) from 0 to 1.
+
+    It is a share of a quarter turn, or of a quarter of the way between the limits of a prismatic
+    joint. Joints may be turned by full circles.
+
+    Args:
+        joints: (…, joints) configurations, rad, or m of prismatic joints.
+    """
     circle = 2 * np.pi
     # As far from both limits as full circles allow: the middle is the best place. A joint without
     # limits has room everywhere.
@@ -129,5 +139,4 @@ def color_costs(robot: Robot, candidates: Candidates) -> Array:
     off = np.abs(joints - middle)
     nearest = np.where(robot.slides, off, np.minimum(off % circle, circle - off % circle))
     roomy = np.where(robot.slides, half / 2, _ROOMY)
-    room = np.clip((half - nearest) / roomy, 0.0, 1.0).min(axis=2)
-    return np.asarray(np.where(valid, 1.0 - np.minimum(good, room), 1.0))
+    return np.asarray(np.clip((half - nearest) / roomy, 0.0, 1.0).min(axis=-1))

@@ -69,7 +69,7 @@ class Transfers:
         self._prepared, self._deadline = prepared, deadline
         self._motion, self._velocities = motion, velocities
         self._leaving = FreeSpace(prepared, 0.0, leaving=True)
-        self._at_object = Contacts([(_TIP, prepared.workplace.target, 0.0)])
+        self._at_object = Contacts([(_TIP, prepared.target, 0.0)])
         self.home = home_of(prepared, motion)
         # The retreat at home has no length; without a home there is nothing to move from.
         self._at_home = np.empty((0, prepared.robot.joints))

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import html
 import pickle
-import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -147,29 +145,6 @@ def _copy(file: Path, folder: Path) -> Path:
     copy = folder / file.name
     copy.write_bytes(file.read_bytes())
     return copy
-
-
-def test_a_notebook_shows_a_table_and_a_picture() -> None:
-    named = replace(HALVES, colors=("<red>", "blue & green"))
-    page = cellcolor.solve(named)._repr_html_()
-    assert "proved for any division" in page
-    table = page.partition("<iframe")[0]
-    cells = [html.unescape(cell) for cell in re.findall("<t[hd]>(.*?)</t[hd]>", table)]
-    assert cells[:4] == ["segment", "color", "cells", "share of surface"]
-    assert {cells[5], cells[9]} == {"<red>", "blue & green"}
-    assert {cells[6], cells[10]} == {"0", "1"}
-    assert page.count("<iframe srcdoc=") == 1 and "src=" not in table
-
-
-def test_a_notebook_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A drawing of the graph needs Matplotlib; what is turned with the mouse needs nothing."""
-    import sys
-
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    monkeypatch.delitem(sys.modules, "cellcolor.pictures.static", raising=False)
-    page = cellcolor.solve(cellcolor.decompose(HALVES))._repr_html_()
-    assert "<td>" in page and "needs matplotlib: pip install" in page and "<iframe" not in page
-    assert "<iframe" in cellcolor.solve(HALVES)._repr_html_()
 
 
 @pytest.mark.parametrize(

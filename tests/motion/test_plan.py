@@ -84,7 +84,7 @@ def test_every_sample_in_contact_is_valid_in_the_color_of_its_segment(motion: Pl
     trajectory = motion.plan.trajectory
     verdicts = motion.prepared.judge(trajectory.joints[trajectory.contact])
     assert (verdicts.reasons == VALID).all()
-    branch_of = motion.built.stages.cleaned.coloring.branch
+    branch_of = motion.built.coloring.branch
     for first, end in trajectory.strokes:
         segment = trajectory.segment[first]
         vertex = int(np.flatnonzero(motion.painted.segment_of == segment)[0])

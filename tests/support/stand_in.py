@@ -106,7 +106,7 @@ def _path(painted: Painted, normals: Array, segment: int, walk: list[int]) -> To
 
 
 def _driven(prepared: PreparedScene, built: BuildResult, paths: tuple[ToolPath, ...]) -> Trajectory:
-    branch_of = built.stages.cleaned.coloring.branch
+    branch_of = built.coloring.branch
     times, joints, points, normals, contact, segments = [0.0], [], [], [], [], []
 
     def go(seconds: float, number: int, arm: Array, point: Array, normal: Array) -> None:

@@ -31,6 +31,7 @@ Pair = Between | tuple[Body, Shape, float]
 _THREADS = min(len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1, 16)
 _OWNER = os.getpid()  # OpenMP's threads do not survive a fork: a child has one
 _PRECISE = True  # without contacts asked for, coal misses flat cylinders up to 0.4 mm inside a mesh
+_TRIED = 100  # configurations, to see whether links touch whatever the arm does
 _PRIMITIVES = {
     "box": coal.Box,
     "sphere": coal.Sphere,
@@ -130,6 +131,22 @@ def pairs_with(robot: Robot, things: Iterable[Shape], margin: float = 0.0) -> li
     """All bodies that can move, from the tool to the base, with things that stand still."""
     moving = [body for body in reversed(robot.bodies) if body.joint > 0]
     return [(body, thing, margin) for thing in things for body in moving]
+
+
+def always_touching(robot: Robot, pairs: Sequence[Between]) -> tuple[tuple[str, str], ...]:
+    """Pairs of links whose bodies, among pairs of them, overlap in all of 100 configurations: their
+    shapes are larger than the links are.
+
+    These are drawn from the joint limits, always the same ones; a joint without limits turns by a
+    full circle.
+    """
+    lower = np.where(np.isinf(robot.lower), -np.pi, robot.lower)
+    upper = np.where(np.isinf(robot.upper), np.pi, robot.upper)
+    tried = np.random.default_rng(0).uniform(lower, upper, (_TRIED, robot.joints))
+    of_links: dict[tuple[str, str], list[Between]] = {}
+    for pair in pairs:
+        of_links.setdefault((pair[0].link, pair[1].link), []).append(pair)
+    return tuple(links for links, own in of_links.items() if Contacts(own, robot)(tried).all())
 
 
 def meet(first: Shape, second: Shape) -> bool:

@@ -50,7 +50,7 @@ def report_data(report: MotionReport) -> dict[str, Any]:
     assert mesh is not None
     surface, prepared = TriangleMesh(mesh.points, mesh.faces), report.built.prepared
     layers, lines = surroundings(prepared), []
-    ground = prepared.workplace.ground
+    ground = prepared.ground
     if ground is not None:
         around = np.concatenate([surface.points, *(layer.points for layer in layers)])
         lines.append(grid(ground, around))
