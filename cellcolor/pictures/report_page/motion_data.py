@@ -41,6 +41,7 @@ _MOST_FRAMES = 4000
 _MOST_MARKS, _MOST_DOTS = 40, 12  # of faults, and of left-out places
 _STOPS = 20  # at which the part beside the tool is to be seen
 _CONTACT = "#00508F"
+_LEFT_OUT = "left out, the largest"  # what the legend calls the dots
 
 
 def report_data(report: MotionReport) -> dict[str, Any]:
@@ -189,7 +190,7 @@ def _marks(
 
     marks = [mark(own.place, f"extra lift-off: {own.reason}") for own in trajectory.extra_lift_offs]
     largest = sorted(trajectory.left_out, key=lambda part: -part.area_m2)[:_MOST_DOTS]
-    marks += [mark(part.place, "", kind="dot") for part in largest]
+    marks += [mark(part.place, "", kind="dot", name=_LEFT_OUT) for part in largest]
     marks += [
         mark(fault.place, fault.kind, kind="mark fault", time=fault.time)
         for fault in faults[:_MOST_MARKS]
