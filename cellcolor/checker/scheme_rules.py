@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
-from cellcolor.checker.cutting_paths import whole_subcells
+from cellcolor.checker.whole_subcells import whole_subcells
 from cellcolor.checker.dart_lists import strands_along
 from cellcolor.checker.groups import Groups
 from cellcolor.data.cells_and_edges import Strand, twin
