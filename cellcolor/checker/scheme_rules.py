@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
-from cellcolor.checker.whole_subcells import whole_subcells
 from cellcolor.checker.dart_lists import strands_along
 from cellcolor.checker.groups import Groups
+from cellcolor.checker.whole_subcells import whole_subcells
 from cellcolor.data.cells_and_edges import Strand, twin
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam

@@ -25,8 +25,7 @@ from cellcolor.solvers.bounds.cover import color_regions, greedy_independent_set
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import CompleteModel, complete_model
 from cellcolor.solvers.cpsat import part as part_module
-from cellcolor.solvers.cpsat.dart_graph import complete_graph
-from cellcolor.solvers.cpsat.parts import loops_of, seam_places, split
+from cellcolor.solvers.cpsat.dart_graph import complete_graph, split
 from cellcolor.solvers.cpsat.sectors import sector_graph
 from cellcolor.solvers.interface import Options
 from examples import examples
@@ -146,9 +145,7 @@ def test_the_complete_model_of_each_shipped_graph_is_small_enough() -> None:
             subject = cellcolor.decompose(subject)
         if not isinstance(subject, Instance):
             continue
-        loops = loops_of(subject)
-        once = dict.fromkeys(subject.live_edges, 1)
-        graph = complete_graph(subject, once, loops, seam_places(subject, loops))
+        graph = complete_graph(subject, dict.fromkeys(subject.live_edges, 1))
         sector_graph(graph, most_colors=complete_model.MOST_LITERALS)  # or it raises
 
 

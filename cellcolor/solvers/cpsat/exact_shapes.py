@@ -18,12 +18,12 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.grouping import MOST_ENTRIES, best_grouping, recursion_size
 from cellcolor.solvers.cpsat.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.hub_ways import Areas, Ways, hub_ways
 from cellcolor.solvers.cpsat.painting import Block, Painting
-from cellcolor.solvers.cpsat.parts import ConnectedPart
 from cellcolor.union_find import UnionFind
 
 MOST_STATES = 20_000
@@ -53,12 +53,11 @@ class Exact:
         ]
 
 
-def exact_minimum(part: ConnectedPart, deadline: Deadline) -> Exact | None:
+def exact_minimum(instance: Instance, deadline: Deadline) -> Exact | None:
     """The minimum of a forest or of hubs with one-colored neighbors; None for other parts."""
-    instance = part.instance
     if instance.most_live_loops > 1:
         return None
-    read = _Part(part, deadline)
+    read = _Part(instance, deadline)
     # Edges connect all cells, so they make a tree if there are fewer of them than cells.
     if len(read.joinable) < 2 * len(read.loops) or read.drop_rim():
         return _tree_minimum(read)
@@ -73,15 +72,14 @@ class _Part:
         joinable: the colors in which each live dart can be joined.
     """
 
-    def __init__(self, part: ConnectedPart, deadline: Deadline) -> None:
-        self.deadline = deadline
-        self.instance = part.instance
-        self.colors = [frozenset(cell.colors) for cell in part.instance.cells]
+    def __init__(self, instance: Instance, deadline: Deadline) -> None:
+        self.instance, self.deadline = instance, deadline
+        self.colors = [frozenset(cell.colors) for cell in instance.cells]
         self.loops: list[Sequence[int]] = [
-            loops[0] if loops else () for loops in part.instance.live_loops
+            loops[0] if loops else () for loops in instance.live_loops
         ]
         self.joinable = {
-            dart: frozenset(part.instance.joinable(dart)) for loop in self.loops for dart in loop
+            dart: frozenset(instance.joinable(dart)) for loop in self.loops for dart in loop
         }
 
     def drop_rim(self) -> bool:

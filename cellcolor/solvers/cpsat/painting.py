@@ -51,6 +51,30 @@ def painting_of(graph: DartGraph, division: Division) -> Painting:
     ]
 
 
+def moved(known: DartGraph, painting: Painting, target: DartGraph) -> Painting:
+    """A painting on another graph of the same cells.
+
+    Strands that the target does not know are cut; the two sides of a seam's strand are one sub-cell
+    then.
+    """
+    seams = {seam.id for seam in known.seams}
+    found: Painting = []
+    for blocks in painting:
+        block_of = {dart: number for number, b in enumerate(blocks) for dart in b.darts}
+        together = UnionFind(range(len(blocks)))
+        for dart, number in block_of.items():
+            name, twin = known.darts[dart].name, known.darts[dart].twin
+            if abs(name[0]) in seams and name not in target.number_of:
+                together.union(number, block_of[twin])
+        made: dict[int, Block] = {}
+        for number, block in enumerate(blocks):
+            one = made.setdefault(together[number], Block(block.color, set()))
+            names = (known.darts[dart].name for dart in block.darts)
+            one.darts |= {target.number_of[name] for name in names if name in target.number_of}
+        found.append(list(made.values()))
+    return found
+
+
 def segments_of(graph: DartGraph, painting: Painting) -> list[set[int]]:
     """The cells that each segment touches."""
     blocks = [block for cell in painting for block in cell]

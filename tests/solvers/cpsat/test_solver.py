@@ -20,9 +20,9 @@ from cellcolor.lab.families.registry import MEDIUM
 from cellcolor.solvers.bounds.cover import set_cover
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import CpSatSolver
+from cellcolor.solvers.cpsat.dart_graph import split
 from cellcolor.solvers.cpsat.painting import division_of
 from cellcolor.solvers.cpsat.part import Part
-from cellcolor.solvers.cpsat.parts import split
 from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.interface import Options, Start
 from examples import examples
@@ -127,7 +127,7 @@ def test_progress_comes_closer_and_never_passes_the_minimum() -> None:
 def part_of(instance: Instance) -> Part:
     """The largest part, covered."""
     options = Options()
-    part = Part(split(instance)[-1], options, Runner(options), lambda: None)
+    part = Part(*split(instance)[-1], options, Runner(options), lambda: None)
     part.cover(NEVER)
     return part
 
