@@ -20,7 +20,7 @@ from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds.cover import Region, color_regions, greedy_independent_set, set_cover
 from cellcolor.solvers.bounds.crossings import enough_crossings
 from cellcolor.solvers.cpsat.dart_graph import DartGraph, complete_graph, dart_graph, widened
-from cellcolor.solvers.cpsat.exact_shapes import exact_minimum
+from cellcolor.solvers.cpsat.exact_shapes import exact_minimum, painting_of_areas
 from cellcolor.solvers.cpsat.formulation import SectorModel
 from cellcolor.solvers.cpsat.local_search import recolor
 from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, moved, segments_of
@@ -125,9 +125,10 @@ class Part:
         found = exact_minimum(self.instance, deadline)
         if found is None:
             return
-        self._keep(self._narrow, canonical(self._narrow, found.painting(self._narrow)))
+        segments, areas = found
+        self._keep(self._narrow, painting_of_areas(self._narrow, areas))
         if max(self._widest.values(), default=1) == 1:
-            self._raise_to(found.segments, "exact", for_surface=False)
+            self._raise_to(segments, "exact", for_surface=False)
 
     def improve(self, turn: int, deadline: Deadline) -> None:
         """Local search from cells painted whole, then from the best division.

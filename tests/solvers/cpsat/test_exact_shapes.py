@@ -19,8 +19,8 @@ from cellcolor.lab.families import hub_grid
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import exact_shapes, hub_ways
 from cellcolor.solvers.cpsat.dart_graph import split
-from cellcolor.solvers.cpsat.exact_shapes import exact_minimum
-from cellcolor.solvers.cpsat.painting import canonical, division_of
+from cellcolor.solvers.cpsat.exact_shapes import exact_minimum, painting_of_areas
+from cellcolor.solvers.cpsat.painting import division_of
 from cellcolor.solvers.interface import Options
 from examples import examples
 
@@ -89,12 +89,13 @@ def exact(instance: Instance, *, certain: bool = True) -> int | None:
         if found is None:
             total = None
             continue
+        segments, areas = found
         graph = graph_of(part)
-        painting = canonical(graph, found.painting(graph))
+        painting = painting_of_areas(graph, areas)
         report = check_division(part, division_of(graph, painting), seams=())
         assert report.valid, report.problems
-        assert report.segments == found.segments
-        total = None if total is None else total + found.segments
+        assert report.segments == segments
+        total = None if total is None else total + segments
     return total
 
 
