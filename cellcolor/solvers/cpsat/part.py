@@ -224,9 +224,8 @@ class Part:
 
     def _begin_with(self, plan: SegmentPlan, deadline: Deadline) -> None:
         """Local search from cells that are painted whole, as a plan has them."""
-        self._planned = [segment.region for segment in plan]
-        color_of = {cell: segment.region[0] for segment in plan for cell in segment.cells}
-        start = self._whole([color_of[cell.id] for cell in self.instance.cells])
+        self._planned = [region for region, _ in plan]
+        start = self._covered([(region[0], cells) for region, cells in plan])
         self._keep(*start)
         if not self.done:
             self._recolor(*start, Random(self._options.seed), deadline, FEW_MOVES)

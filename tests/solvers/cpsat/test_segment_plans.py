@@ -60,7 +60,7 @@ def fewest_planned(instance: Instance) -> tuple[int, SegmentPlan]:
 def test_plans_respect_separations(petals: tuple[int, ...], segments: int) -> None:
     fewest, plan = fewest_planned(hub(*petals))
     assert len(plan) == fewest == segments == minimum(hub(*petals))
-    assert set().union(*(s.cells for s in plan)) == set(range(len(petals) + 1))
+    assert set().union(*(cells for _, cells in plan)) == set(range(len(petals) + 1))
 
 
 @examples(20)
@@ -74,8 +74,8 @@ def test_what_cannot_be_planned_cannot_be_painted(seed: int, cells: int, colors:
     assert wide.segments is not None
     assert fewest <= wide.segments
     for cell in instance.cells:
-        assert sum(cell.id in segment.cells for segment in plan) == 1
-    assert all(segment.cells <= segment.region[1] for segment in plan)
+        assert sum(cell.id in cells for _, cells in plan) == 1
+    assert all(cells <= region[1] for region, cells in plan)
 
 
 def test_with_too_many_separations_a_planner_gives_up(monkeypatch: pytest.MonkeyPatch) -> None:
