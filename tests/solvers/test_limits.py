@@ -69,14 +69,14 @@ def test_strangers_found_at_once_share_no_region(seed: int, cells: int, colors: 
     found = greedy_independent_set(instance)
     for one, other in combinations(found, 2):
         assert not any({one, other} <= region for _, region in color_regions(instance))
-    assert 1 <= len(found) <= set_cover(instance).bound
+    assert 1 <= len(found) <= set_cover(color_regions(instance)).bound
 
 
 @examples(15)
 @given(seed=SEEDS, cells=st.integers(1, 12), colors=st.integers(1, 5))
 def test_a_cover_without_time_is_a_cover_all_the_same(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 3, colors)
-    hasty, exact = set_cover(instance, deadline=OVER), set_cover(instance)
+    hasty, exact = set_cover(color_regions(instance), OVER), set_cover(color_regions(instance))
     assert set().union(*(touched for _, touched in hasty.regions)) == set(range(cells))
     assert 1 <= hasty.bound <= exact.bound == len(exact.regions) <= len(hasty.regions)
 
@@ -216,13 +216,11 @@ def test_minima_of_parts_add_up(seeds: list[int], cells: int) -> None:
 def test_parts_are_what_live_edges_connect(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 3, colors)
     parts = split(instance)
-    assert sorted(cell for part in parts for cell in part.cells) == list(range(cells))
-    part_of = {cell: number for number, part in enumerate(parts) for cell in part.cells}
+    assert sorted(cell for _, own in parts for cell in own) == list(range(cells))
+    part_of = {cell: number for number, (_, own) in enumerate(parts) for cell in own}
     for edge in instance.edges:
         if instance.joinable(edge.id):
             assert part_of[edge.left] == part_of[edge.right]
-    for part in parts:
-        regions = color_regions(part.instance)
-        assert all(cells <= set(range(len(part.cells))) for _, cells in regions)
-        own = [instance.cells[cell].colors for cell in part.cells]
-        assert [cell.colors for cell in part.instance.cells] == own
+    for part, whole in parts:
+        assert all(cells <= set(range(len(whole))) for _, cells in color_regions(part))
+        assert [cell.colors for cell in part.cells] == [instance.cells[c].colors for c in whole]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from ortools.sat.python import cp_model
 
-from cellcolor.solvers.bounds.cover import smallest_cover
+from cellcolor.solvers.bounds.cover import set_cover
 from cellcolor.solvers.bounds.grouping import best_grouping
 from cellcolor.union_find import UnionFind
 
@@ -110,7 +110,7 @@ def regions_in_use(m: SectorModel) -> None:
 
 def cover(m: SectorModel) -> None:
     """(8) There are as many regions in use as a smallest set cover has, and as many segments."""
-    m.fewest_regions = smallest_cover(m.regions, len(m.sectors.nodes))
+    m.fewest_regions = set_cover(m.regions).bound
     m.model.add(sum(m.used) >= m.fewest_regions)
     m.model.add(sum(m.variables.root.values()) >= m.fewest_regions)
 

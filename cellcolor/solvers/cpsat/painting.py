@@ -98,9 +98,7 @@ def segments_of(graph: DartGraph, painting: Painting) -> list[set[int]]:
     return segments
 
 
-def canonical(
-    graph: DartGraph, painting: Painting, changed: Iterable[int] | None = None
-) -> Painting:
+def canonical(graph: DartGraph, painting: Painting) -> Painting:
     """Make a scheme of a legal painting, with no more segments (docs/semantics.md, section 3).
 
     Throughout, a dart in state 0 shows the color of the sub-cell before it in cyclic order; a loop
@@ -117,34 +115,22 @@ def canonical(
     paths than before either (docs/semantics.md, section 8).
 
     Args:
-        painting: what is legal on it.
-        changed: the cells in which it is not a scheme's yet; None for all of them, and to work on
-            the painting's own blocks. Cells that stay as they are keep their lists of blocks.
+        painting: what is legal on it; its own blocks are changed.
     """
-    made: dict[int, _Cell] = {}
-
-    def at(number: int) -> _Cell:
-        if number not in made:
-            own = painting[number]
-            if changed is not None:
-                own = [Block(block.color, set(block.darts)) for block in own]
-            made[number] = _Cell(graph.loops[number], own)
-        return made[number]
-
-    first = range(len(painting)) if changed is None else sorted(changed)
-    waiting = dict.fromkeys(reversed(first))
+    cells = [_Cell(*own) for own in zip(graph.loops, painting, strict=True)]
+    waiting = dict.fromkeys(reversed(range(len(cells))))
     while waiting:
         number, _ = waiting.popitem()
-        cell = at(number)
+        cell = cells[number]
         for dart in graph.lists[number]:
             if dart in cell.block_of:
                 continue
             twin = graph.darts[dart].twin
             beyond = graph.darts[twin].cell
-            one, its = cell.shown(dart), at(beyond).shown(twin)
+            one, its = cell.shown(dart), cells[beyond].shown(twin)
             if one.color == its.color and one.color in graph.darts[dart].colors:
                 cell.add(dart, one)
-                at(beyond).add(twin, its)
+                cells[beyond].add(twin, its)
                 if len(graph.loops[beyond]) > 1:
                     waiting[beyond] = None  # another sub-cell may be its first one now
         cell.merge()
@@ -153,12 +139,9 @@ def canonical(
             twin = graph.darts[single].twin
             beyond = graph.darts[twin].cell
             cell.remove(single)
-            at(beyond).remove(twin)
+            cells[beyond].remove(twin)
             waiting[number] = waiting[beyond] = None
-    found = list(painting)
-    for number, cell in made.items():
-        found[number] = cell.blocks()
-    return found
+    return [cell.blocks() for cell in cells]
 
 
 class _Cell:

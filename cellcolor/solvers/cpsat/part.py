@@ -114,7 +114,7 @@ class Part:
 
     def cover(self, deadline: Deadline) -> None:
         """A smallest set cover: the first bound, and a division with every cell painted whole."""
-        found = set_cover(self.instance, deadline=deadline)
+        found = set_cover(self.regions, deadline)
         self.cover_bound = max(self.bound, found.bound)
         self._planned = found.regions
         self._raise_to(found.bound, "cover", for_surface=True)

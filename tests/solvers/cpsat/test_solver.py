@@ -17,7 +17,7 @@ from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, hub, hub_minimum
 from cellcolor.lab.families.registry import MEDIUM
-from cellcolor.solvers.bounds.cover import set_cover
+from cellcolor.solvers.bounds.cover import color_regions, set_cover
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.cpsat.dart_graph import split
@@ -84,7 +84,9 @@ def test_without_any_time_there_is_a_division_all_the_same() -> None:
     found = solve(instance, Options(deadline=Deadline.after(0.0)))
     assert found.status == "feasible" and [bound.kind for bound in found.bounds] == ["strangers"]
     assert found.segments is not None and found.segments <= len(instance.cells)
-    assert 1 <= found.surface_lower_bound <= set_cover(instance).bound < found.segments
+    assert (
+        1 <= found.surface_lower_bound <= set_cover(color_regions(instance)).bound < found.segments
+    )
 
 
 @pytest.mark.parametrize("instance", [Instance("empty", (), (), ()), Instance("e", ("r",), (), ())])
