@@ -16,7 +16,7 @@ from math import inf
 import cellcolor
 from cellcolor.decomposition import decomposition_of
 from cellcolor.frontend import build_surface
-from cellcolor.processes import Limits, run_alone
+from cellcolor.processes import run_alone
 
 SCENES = ("square", "half_pipe", "wok", "wok_obstacle", "hemisphere_flat", "hemisphere_tilted")
 NOT_TESTS = (
@@ -59,7 +59,7 @@ def main() -> None:
     print("|---|--:|--:|--:|--:|--:|--:|--:|", flush=True)
     for vertices in asked.vertices:
         for name in asked.scenes:
-            ended = run_alone(measured, (name, vertices), Limits(inf, inf))
+            ended = run_alone(measured, (name, vertices), inf, inf)
             print(ended.value or f"| {name} | {ended.error} |", flush=True)
 
 

@@ -5,7 +5,8 @@
 Makes ``cellcolor-library-VERSION.zip``. It has each graph as an instance, the stored solutions,
 ``index.json``, the stand-alone ``check_solution.py`` and ``features.csv``. ``--measure`` solves all
 graphs again before, S seconds each with one worker, for the classes of difficulty; otherwise they
-are those of the last time. ``docs/library.md`` says what the features are.
+are those of the last time. ``instances/README.md`` says what the
+features are.
 """
 
 from __future__ import annotations

@@ -60,14 +60,12 @@ from cellcolor.oracle import PathVerdict as PathVerdict
 from cellcolor.oracle import ProvenRange as ProvenRange
 from cellcolor.oracle import Verdict as Verdict
 from cellcolor.painting.paint import Painted as Painted
-from cellcolor.questions.explanation import BranchHere as BranchHere
 from cellcolor.questions.explanation import Explanation as Explanation
 from cellcolor.questions.explanation import RelaxedMinimum as RelaxedMinimum
 from cellcolor.questions.front import Front as Front
 from cellcolor.questions.front import FrontPoint as FrontPoint
 from cellcolor.questions.placements import Leeway as Leeway
 from cellcolor.questions.placements import PlacedMinimum as PlacedMinimum
-from cellcolor.questions.placements import PlacementMap as PlacementMap
 from cellcolor.questions.placements import Placements as Placements
 from cellcolor.questions.places import WorldBox as WorldBox
 from cellcolor.questions.set_ups import SetUp as SetUp

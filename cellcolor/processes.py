@@ -1,15 +1,11 @@
 """Programs and functions in processes of their own, which can be ended at any moment.
 
-:class:`Child` reads what a program prints until a deadline. :func:`watch` runs a command, and
-:func:`run_alone` a function, within limits of time and memory.
+:class:`Child` reads what a program prints until a deadline; :func:`run_alone` calls a function
+within limits of time and memory. Limits hold whatever the work does: the process is looked at from
+outside, and killed with its children.
 
-Limits hold whatever the work does: the process is looked at from outside, and what takes too long
-or too much memory is killed with its children. If the watching process is killed itself, a shell
-beside the work notices that its standard input has ended, and ends the work.
-
-No library does this: pebble's pools kill a worker, not its children, and have no limit of memory;
-psutil finds the children of a process and not what its dead children have left behind, which is in
-the session. With psutil some ten lines would go and a dependency come.
+No library does this. The pools of concurrent.futures and pebble kill a worker, not its children,
+and psutil does not find what dead children have left behind, which is in the session.
 """
 
 from __future__ import annotations
@@ -23,18 +19,14 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path
-from queue import Empty, SimpleQueue
-from threading import Thread
+from textwrap import shorten
+from threading import TIMEOUT_MAX, Timer
 from typing import IO, Any, Literal
 
 from cellcolor.deadline import Deadline
 from cellcolor.errors import CellcolorError
-from cellcolor.machine import Machine, this_machine
-
-_LOOKED_AFTER = 0.1
-"""Seconds between two looks at the deadline. Python handles a signal, such as Ctrl-C, only then."""
 
 
 class Child:
@@ -56,6 +48,7 @@ class Child:
             CellcolorError: it cannot be started.
         """
         self._name = Path(command[0]).name
+        self._killed = False
         self._errors = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115, closed in __exit__
         try:
             self._process = subprocess.Popen(
@@ -68,60 +61,49 @@ class Child:
                 errors="replace",
                 # Ctrl-C reaches it through this process only. It stays in the session: whoever
                 # watches this process kills everything in its session.
-                process_group=0 if os.name == "posix" else None,
+                process_group=0,
             )
         except OSError as error:
             self._errors.close()
             raise CellcolorError(f"{self._name}: {error.strerror}") from error
-        self._lines: SimpleQueue[str | None] = SimpleQueue()
-        self._reader = Thread(target=self._read, daemon=True)
-        self._reader.start()
 
     def __enter__(self) -> Child:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._process.poll() is None:
-            self._kill()
-        self._process.wait()
-        self._reader.join()
+        self._kill()
+        self._process.communicate()
         self._errors.close()
 
     def lines(self, deadline: Deadline) -> Iterator[str]:
         """What it prints, line by line, until it ends or the deadline comes."""
-        while not deadline.over:
-            try:
-                line = self._lines.get(timeout=min(_LOOKED_AFTER, deadline.left))
-            except Empty:
-                continue
-            if line is None:
-                return
-            yield line.rstrip("\r\n")
+        assert self._process.stdout is not None
+        timer = Timer(min(deadline.left, TIMEOUT_MAX), self._kill)
+        timer.daemon = True
+        timer.start()
+        try:
+            for line in self._process.stdout:
+                if deadline.over:
+                    return
+                yield line.rstrip("\r\n")
+            self._process.wait()
+        finally:
+            timer.cancel()
 
     @property
     def failure(self) -> str | None:
-        """Its last complaint if it has ended with an exit code other than 0."""
-        if self._process.poll() in (None, 0):
+        """Its last complaint if it has ended by itself, with an exit code other than 0."""
+        if self._killed or self._process.poll() in (None, 0):
             return None
         said = _last_line(self._errors) or f"exit code {self._process.returncode}"
         return f"{self._name}: {said}"
 
-    def _read(self) -> None:
-        assert self._process.stdout is not None
-        with self._process.stdout as output:
-            for line in output:
-                self._lines.put(line)
-        self._process.wait()
-        self._lines.put(None)
-
     def _kill(self) -> None:
-        try:
-            if os.name == "posix":
-                os.killpg(self._process.pid, signal.SIGKILL)
-            else:
-                self._process.kill()
-        except ProcessLookupError:
-            pass  # it has just ended by itself
+        if self._process.poll() is not None:
+            return
+        self._killed = True
+        with suppress(ProcessLookupError):  # it has just ended by itself
+            os.killpg(self._process.pid, signal.SIGKILL)
 
 
 End = Literal["done", "failed", "timeout", "memory", "crashed", "stopped"]
@@ -129,32 +111,19 @@ End = Literal["done", "failed", "timeout", "memory", "crashed", "stopped"]
 its memory; it broke down or somebody else killed it; the watcher was told to stop."""
 
 _GUARD = 'exec 3<&0; (read -r _; kill -9 0) <&3 & exec "$@" 3<&- </dev/null'
-"""Shell: end the whole process group when standard input ends, and become the command."""
+"""Shell: become the command, and end all of its process group when standard input ends, which it
+does if the watching process is killed."""
 
-_SHELLS = 10
-"""Files with smaller numbers are the shell's own, and those that were put in their place."""
+_START = "import sys; sys.path[:] = sys.argv[3:]\nfrom cellcolor.processes import main; main()"
 
-_SHORTEST, _LONGEST = 0.002, 0.05
+_SHORTEST, _LONGEST = 0.002, 0.1
 """Seconds between two looks at a process, which grow from one to the other."""
-
-_ALL_AFTER = 0.25
-"""Seconds between two looks for the children of a process, which means to look at every process."""
 
 _SHOWN = 300
 """Characters of an error that are kept."""
 
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """What a process may take, its children included.
-
-    Attributes:
-        seconds: by the clock, from its start.
-        megabytes: of memory at a time (2**20 bytes, resident); held on Linux only.
-    """
-
-    seconds: float
-    megabytes: float = 4096.0
+MOST_MB = 4096.0
+"""What a piece of work may take, 2**20 bytes, unless something else is said."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,10 +136,8 @@ class Ended:
         error: a line about what went wrong, empty if nothing did.
         seconds: from the start of the process to its end.
         cpu_seconds: of all processors, of the process and the children that it waited for.
-        peak_mb: the most memory at a time (2**20 bytes, resident); of what lives shorter than a few
-            milliseconds it may see less.
-        load: the machine's load average over the last minute, at the end.
-        machine: where it ran.
+        peak_mb: the most memory at a time (2**20 bytes, resident); of children that live shorter
+            than a tenth of a second it may see less.
     """
 
     end: End
@@ -179,91 +146,49 @@ class Ended:
     seconds: float = 0.0
     cpu_seconds: float = 0.0
     peak_mb: float = 0.0
-    load: float = 0.0
-    machine: Machine = field(default_factory=this_machine)
 
 
 def run_alone(
     function: Callable[..., Any],
     arguments: Sequence[Any],
-    limits: Limits,
+    most_seconds: float,
+    most_mb: float = MOST_MB,
     stop: Callable[[], bool] = lambda: False,
 ) -> Ended:
-    """Call a function in a new process.
+    """Call a function in a new process and session, and end all that is left there afterwards.
 
     Args:
-        function: of a module that the new process can import.
+        function: of a module that the new process can import; nobody sees what it prints.
         arguments: what can be pickled.
-        limits: what is beyond them is killed.
+        most_seconds: by the clock, from its start; what takes more is killed.
+        most_mb: of memory at a time (2**20 bytes, resident), its children included, likewise.
         stop: asked again and again; the work is killed once it says so.
     """
-    from fcntl import F_DUPFD_CLOEXEC, fcntl  # which Windows does not have
-
-    with tempfile.TemporaryFile() as task, tempfile.TemporaryFile() as result:
-        pickle.dump((function, tuple(arguments)), task)
-        task.seek(0)
-        handles = [fcntl(file, F_DUPFD_CLOEXEC, _SHELLS) for file in (task, result)]
-        start = "import sys; sys.path[:] = sys.argv[3:]\n"
-        start += "from cellcolor.processes import main; main()"
-        command = [sys.executable, "-c", start, *map(str, handles), *sys.path]
-        try:
-            ended = watch(command, limits, stop, handles)
-        finally:
-            for handle in handles:
-                os.close(handle)
-        if ended.end != "done":
-            return ended
-        result.seek(0)
-        return _with_result(ended, result)
-
-
-def _with_result(ended: Ended, result: IO[bytes]) -> Ended:
-    """What the process wrote down before it ended."""
-    try:
-        end, content, peak_mb = pickle.load(result)
-    except Exception as error:
-        return replace(ended, end="crashed", error=_line(f"left no result: {error}"))
-    peak_mb = max(ended.peak_mb, peak_mb)
-    if end == "done":
-        return replace(ended, value=content, peak_mb=peak_mb)
-    return replace(ended, end=end, error=_line(content), peak_mb=peak_mb)
-
-
-def watch(
-    command: Sequence[str],
-    limits: Limits,
-    stop: Callable[[], bool] = lambda: False,
-    handles: Sequence[int] = (),
-) -> Ended:
-    """Run a command in a session of its own until it ends or has to be killed.
-
-    Args:
-        command: what to run; it gets an empty standard input, and nobody sees what it prints.
-        limits: what is beyond them is killed.
-        stop: asked again and again; the command is killed once it says so.
-        handles: files of this process that it can use, none of them below 10.
-    """
-    with tempfile.TemporaryFile() as errors:
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as errors:
+        task, result = Path(folder, "task"), Path(folder, "result")
+        task.write_bytes(pickle.dumps((function, tuple(arguments))))
+        command = [sys.executable, "-c", _START, str(task), str(result), *sys.path]
         started = time.monotonic()
         process = subprocess.Popen(
             ["/bin/sh", "-c", _GUARD, "sh", *command],
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             stderr=errors,
-            pass_fds=handles,
             start_new_session=True,
         )
+        assert process.stdin is not None
         end: End | None = None
-        memory = _Memory(process.pid)
-        pause = _SHORTEST
+        peak, pause, error = 0.0, _SHORTEST, ""
         try:
             while not (found := os.wait4(process.pid, os.WNOHANG))[0]:
+                memory = sum(map(_megabytes, _members(process.pid)))
+                peak = max(peak, memory)
                 if stop():
-                    end = "stopped"
-                elif memory.look() > limits.megabytes:
-                    end = "memory"
-                elif time.monotonic() - started > limits.seconds:
-                    end = "timeout"
+                    end, error = "stopped", "stopped"
+                elif memory > most_mb:
+                    end, error = "memory", f"killed at more than {most_mb:.0f} MB"
+                elif time.monotonic() - started > most_seconds:
+                    end, error = "timeout", f"killed after {most_seconds:.0f} s"
                 if end is not None:
                     _kill(process.pid)
                     found = os.wait4(process.pid, 0)
@@ -272,68 +197,38 @@ def watch(
                 pause = min(1.5 * pause, _LONGEST)
         finally:
             _kill(process.pid)  # its children, and the shell that waits beside it
-            assert process.stdin is not None
             process.stdin.close()
         _, status, usage = found
         process.returncode = os.waitstatus_to_exitcode(status)
-        error = _complaint(end, process.returncode, limits, _last_line(errors))
-        return Ended(
-            end or ("done" if process.returncode == 0 else "crashed"),
-            error=error,
-            seconds=time.monotonic() - started,
-            cpu_seconds=usage.ru_utime + usage.ru_stime,
-            peak_mb=memory.peak,
-            load=os.getloadavg()[0],
-        )
+        cost = time.monotonic() - started, usage.ru_utime + usage.ru_stime
+        if end is None and process.returncode == 0:
+            end, value, error, own = _result(result)
+            return Ended(end, value, shorten(error, _SHOWN), *cost, max(peak, own))
+        if end is None:
+            error = _complaint(process.returncode, _last_line(errors))
+        return Ended(end or "crashed", None, shorten(error, _SHOWN), *cost, peak)
 
 
-def _complaint(end: End | None, code: int, limits: Limits, said: str) -> str:
-    """Why a process did not come back, in a line."""
-    if end == "timeout":
-        return f"killed after {limits.seconds:.0f} s"
-    if end == "memory":
-        return f"killed at more than {limits.megabytes:.0f} MB"
-    if code == 0:
-        return ""
+def _result(file: Path) -> tuple[End, Any, str, float]:
+    """What the process wrote down before it ended: how, its value, an error, and its most MB."""
+    try:
+        found: tuple[End, Any, str, float] = pickle.loads(file.read_bytes())
+        return found
+    except Exception as error:  # whatever was written is no pickle of ours
+        return "crashed", None, f"left no result: {error}", 0.0
+
+
+def _complaint(code: int, said: str) -> str:
+    """Why a process did not come back."""
     if code < 0:
-        name = signal.Signals(-code).name
-        return _line(f"ended by {name}" + (f": {said}" if said else ""))
-    return _line(said or f"exit code {code}")
+        return f"ended by {signal.Signals(-code).name}" + (f": {said}" if said else "")
+    return said or f"exit code {code}"
 
 
 def _last_line(errors: IO[bytes]) -> str:
     """The last line of a process's error output; empty if there is none."""
     errors.seek(0)
     return errors.read().decode(errors="replace").strip().rpartition("\n")[2]
-
-
-def _line(text: object) -> str:
-    """A text in one line that is not too long for a table."""
-    line = " ".join(str(text).split())
-    return line if len(line) <= _SHOWN else f"{line[:_SHOWN]} …"
-
-
-class _Memory:
-    """The memory of a session, looked at from outside.
-
-    Attributes:
-        peak: the most that was seen, megabytes.
-    """
-
-    def __init__(self, session: int) -> None:
-        self.peak = 0.0
-        self._session = session
-        self._members = [session]
-        self._looked = time.monotonic()
-
-    def look(self) -> float:
-        """What all of its processes have now, megabytes; 0 where that cannot be known."""
-        if time.monotonic() - self._looked > _ALL_AFTER:
-            self._members = _members(self._session)
-            self._looked = time.monotonic()
-        now = sum(map(_megabytes, self._members))
-        self.peak = max(self.peak, now)
-        return now
 
 
 def _megabytes(pid: int) -> float:
@@ -344,14 +239,12 @@ def _megabytes(pid: int) -> float:
     return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
 
 
-def _members(session: int) -> list[int]:
+def _members(session: int) -> Iterator[int]:
     """The processes of a session."""
-    found = []
     for place in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):
             if os.getsid(int(place.name)) == session:
-                found.append(int(place.name))
-    return found
+                yield int(place.name)
 
 
 def _kill(session: int) -> None:
@@ -364,28 +257,21 @@ def _kill(session: int) -> None:
 
 
 def main() -> None:
-    """What the process of :func:`run_alone` does: read the task, and write what came of it.
+    """The process of :func:`run_alone`: read the task, and write what came of it.
 
-    The numbers of both files are the first two arguments of the command.
+    Both files are the first two arguments of the command.
     """
-    with os.fdopen(int(sys.argv[1]), "rb") as task:
-        outcome = _outcome(task.read())
-    with os.fdopen(int(sys.argv[2]), "wb") as result:
-        result.write(outcome)
-
-
-def _outcome(task: bytes) -> bytes:
-    """How the call ended, what it returned or complained of, and the most memory, pickled."""
-    end, content = "failed", ""
+    task, result = map(Path, sys.argv[1:3])
     try:
-        function, arguments = pickle.loads(task)
-        value: Any = function(*arguments)
-        return pickle.dumps(("done", value, _peak_mb()))
+        function, arguments = pickle.loads(task.read_bytes())
+        value = function(*arguments)
+        outcome = pickle.dumps(("done", value, "", _peak_mb()))
     except MemoryError:
-        end, content = "memory", "out of memory"
+        outcome = pickle.dumps(("memory", None, "out of memory", _peak_mb()))
     except Exception as error:
-        content = f"{type(error).__name__}: {error}"
-    return pickle.dumps((end, content, _peak_mb()))
+        text = f"{type(error).__name__}: {error}"
+        outcome = pickle.dumps(("failed", None, text, _peak_mb()))
+    result.write_bytes(outcome)
 
 
 def _peak_mb() -> float:

@@ -14,6 +14,7 @@ sys.path.append(str(Path(__file__).parent))
 
 import library_table
 import reports
+from front_door import front_door
 
 import cellcolor
 from cellcolor import __version__
@@ -104,9 +105,10 @@ def _read_docstring(
 
 
 def _write_reference(_app: Sphinx) -> None:
-    """Write a page for each room of the package, with all of its modules."""
+    """Write the list of the front door, and a page for each room with all of its modules."""
     folder = Path(__file__).parent / "_api"
     folder.mkdir(exist_ok=True)
+    (folder / "front_door.txt").write_text(front_door())
     pages: dict[str, list[str]] = {}
     for module in walk_packages(cellcolor.__path__, "cellcolor."):
         room = module.name.split(".")[1]

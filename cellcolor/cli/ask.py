@@ -25,11 +25,10 @@ from cellcolor.cli.options import (
     ranges,
     shared,
 )
-from cellcolor.cli.progress import at_work, workers_for
+from cellcolor.cli.progress import at_work
 from cellcolor.cli.terminal import complain, drawn_to, print_json, say, say_lines
-from cellcolor.data.prices import MOST_CM2, MOST_PRICE
+from cellcolor.data.prices import MOST_PRICE
 
-_POINT = Numbers("a point is three numbers x,y,z", 3)
 _POSE = Numbers("a place is six numbers x,y,z,roll,pitch,yaw", 6)
 _SCENE = click.argument("scene", metavar="SCENE", type=INPUT)
 _UNSOLVED = "the time limit came before the scene itself was solved"
@@ -47,28 +46,13 @@ def _print(file: Path, rows: Iterable[dict[str, Any]], text: object, as_json: bo
 @cellcolor.command()
 @click.argument("source", metavar="SCENE|SURFACE|INSTANCE", type=INPUT)
 @option("--share", SHARE, "Print only the fewest lift-offs that cover this share, 0 to 1.")
-@click.option(
-    "--price",
-    "--lift-off-price",
-    metavar="CM2",
-    type=Real("CM2", 0, MOST_CM2),
-    help="Print only the least sum: a lift-off costs as much as CM2 square centimeters left out.",
-)
-@option(
-    "--weights",
-    None,
-    'A JSON file, {"weights": […]} with a number for each vertex, by which its area counts.',
-    metavar="FILE.json",
-)
-@shared("required", "left_alone")
+@shared("left_alone")
 @output_option("FRONT.(png|svg)", "Draw the whole front to a file.")
 @json_option("Print a JSON object for each point.")
 @shared("workers", "seed", "time_limit")
 def tradeoff(
     source: Path,
     share: float | None,
-    price: float | None,
-    weights: str | None,
     output: Path | None,
     as_json: bool,
     **search: Any,
@@ -81,23 +65,15 @@ def tradeoff(
     from cellcolor.cli.tables import nothing_to_cover
     from cellcolor.door.asking import save_front
     from cellcolor.door.asking import tradeoff as front_of
-    from cellcolor.questions.places import read_weights
 
-    if share is not None and price is not None:
-        raise click.UsageError("--share and --price are two questions")
     with drawn_to(output, [source], as_json) as draw:
-        given = None if weights is None else read_weights(weights)
         with at_work(source, "asking", "the time limit came before any division was found") as tell:
             subject = read_subject(source, search["time_limit"])
-            front = front_of(subject, weights=given, progress=tell, **search)
+            front = front_of(subject, progress=tell, **search)
             if not front.points:
                 complain(f"{source}: {nothing_to_cover(front.instance)}")
                 return Exit.STOPPED
-            rows: list[Any] = list(front.points)
-            if share is not None:
-                rows = [front.fewest_for(share)]
-            elif price is not None:
-                rows = [front.least_cost(price)]
+            rows: list[Any] = list(front) if share is None else [front.fewest_for(share)]
         _print(source, (row.to_document() for row in rows), "\n".join(map(str, rows)), as_json)
         draw(lambda file: save_front(front, file))
     return Exit.done_if(all(row.proved for row in rows))
@@ -105,16 +81,9 @@ def tradeoff(
 
 @cellcolor.command()
 @_SCENE
-@option(
-    "--at",
-    _POINT,
-    "Also say what each branch does at the vertex nearest to this point (m), and by which tests "
-    "its color ends.",
-    metavar="X,Y,Z",
-)
 @json_option("Print a JSON object for each row.")
 @shared("workers", "seed", "time_limit")
-def explain(scene: Path, at: tuple[float, ...] | None, as_json: bool, **search: Any) -> Exit:
+def explain(scene: Path, as_json: bool, **search: Any) -> Exit:
     """Print what costs a lift-off: the minimum without each limit, obstacle and test.
 
     Of what saves a lift-off the least amount that does is printed too. Where nothing does alone,
@@ -123,8 +92,8 @@ def explain(scene: Path, at: tuple[float, ...] | None, as_json: bool, **search: 
     from cellcolor.door.asking import explain as explanation_of
 
     with at_work(scene, "explaining", _UNSOLVED) as tell:
-        found = explanation_of(scene, at=at, progress=tell, **search)
-    _print(scene, found.documents(), found, as_json)
+        found = explanation_of(scene, progress=tell, **search)
+    _print(scene, (row.to_document() for row in found), found, as_json)
     return Exit.done_if(found.complete and all(row.proved_for_surface for row in found))
 
 
@@ -155,14 +124,6 @@ def explain(scene: Path, at: tuple[float, ...] | None, as_json: bool, **search: 
     "Of the coarse mesh that placements are tried on.",
     default=300,
 )
-@option(
-    "--uncovered-price",
-    Real("PRICE", 0, MOST_PRICE),
-    "Make the sum of lift-offs and PRICE × uncovered share least.  [default: lift-offs first, then "
-    "area]",
-    default=0.0,
-    show_default=False,
-)
 @shared("tolerance")
 @click.option(
     "--base",
@@ -175,47 +136,20 @@ def explain(scene: Path, at: tuple[float, ...] | None, as_json: bool, **search: 
     "Tell how far the best placements may be off before their lift-offs rise, tried up to so many "
     "metres.",
 )
-@option(
-    "--map",
-    PATH,
-    "A map over one or two ranges: lift-offs and area in the middle of each tile.",
-    to="picture",
-    metavar="OUT.(png|svg)",
-)
-@option(
-    "--tiles",
-    Count(1, 1000),
-    "Of the map, along each range; their middles are tried in place of --points.",
-    default=31,
-)
-@output_option(
-    "TABLE.csv",
-    "Keep each placement as it is proved; a table that is there is continued.",
-    to="table",
-)
 @json_option("Print a JSON object for each placement.")
-@shared("jobs", "cluster", "seed", "time_limit")
-def place(
-    scene: Path, tolerance: str | None, picture: Path | None, as_json: bool, **search: Any
-) -> Exit:
+@shared("jobs", "seed", "time_limit")
+def place(scene: Path, tolerance: str | None, as_json: bool, **search: Any) -> Exit:
     """Print where the part should stand: the placements with the fewest lift-offs, proved.
 
     Many placements are tried on a coarse mesh, the best ones built and proved on the scene's own.
     """
     from cellcolor.cli.inputs import with_tolerance
     from cellcolor.door.placing import place as placements_of
-    from cellcolor.door.placing import save_map
 
-    if picture is None:
-        del search["tiles"]
-    with drawn_to(picture, [scene], as_json) as draw:
-        if (cluster := search.pop("cluster")) is not None:
-            search["jobs"] = workers_for(search["jobs"], cluster)
-        with at_work(scene, "placing", _UNSOLVED) as tell:
-            found = placements_of(with_tolerance(scene, tolerance), progress=tell, **search)
-        moved = {"moved": "base"} if found.base else {}
-        _print(scene, (moved | row.to_document() for row in found), found, as_json)
-        draw(lambda file: save_map(found, file))
+    with at_work(scene, "placing", _UNSOLVED) as tell:
+        found = placements_of(with_tolerance(scene, tolerance), progress=tell, **search)
+    moved = {"moved": "base"} if found.base else {}
+    _print(scene, (moved | row.to_document() for row in found), found, as_json)
     proved = bool(found.best) and all(row.proved_for_surface for row in found.best)
     return Exit.done_if(found.complete and proved)
 
@@ -229,7 +163,6 @@ def place(
     metavar="X,Y,Z,ROLL,PITCH,YAW",
     multiple=True,
 )
-@option("--places", PATH, "What place --json has printed.", metavar="FILE.jsonl")
 @option(
     "--with",
     INPUT,
@@ -265,7 +198,6 @@ def place(
 def setups(
     scene: Path,
     at: tuple[tuple[float, ...], ...],
-    places: Path | None,
     stops: tuple[tuple[str, tuple[float, ...]], ...],
     output: Path | None,
     folder: Path | None,
@@ -278,7 +210,6 @@ def setups(
     of these is one instead.
     """
     from cellcolor.door.drawing import kind_of_picture
-    from cellcolor.door.setting_up import places_in
     from cellcolor.door.setting_up import setups as set_ups_of
     from cellcolor.files.writing import check_output, is_folder_or_nothing
 
@@ -286,9 +217,8 @@ def setups(
         check_output(output, kind_of_picture(output), [scene])
     if folder is not None:
         is_folder_or_nothing(folder)
-    all_places = [*at, *([] if places is None else places_in(places))]
     with at_work(scene, "setting up", "the time limit came before there was a choice") as tell:
-        found = set_ups_of(scene, at=all_places, stops=dict(stops) or None, progress=tell, **search)
+        found = set_ups_of(scene, at=at, stops=dict(stops) or None, progress=tell, **search)
     _print(scene, [found.answer.to_document()], found, as_json)
     if output is not None:
         found.plot(output)

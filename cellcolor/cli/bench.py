@@ -19,9 +19,8 @@ from cellcolor.cli.options import (
     output_option,
     shared,
 )
-from cellcolor.cli.terminal import say, say_lines
-from cellcolor.errors import InputError, system_errors
-from cellcolor.files.writing import PNG, SVG, Output, write
+from cellcolor.cli.terminal import say_lines
+from cellcolor.errors import InputError
 from cellcolor.solvers.registry import DEFAULT, PAPERS, REFERENCE
 
 if TYPE_CHECKING:
@@ -84,7 +83,7 @@ def bench() -> None:
     default=4096,
     metavar="MB",
 )
-@shared("jobs", "cluster")
+@shared("jobs")
 @output_option(
     "TABLE.csv", "A row for each run. An existing table is continued: its runs are not repeated."
 )
@@ -112,29 +111,6 @@ def summary(tables: tuple[Path, ...]) -> Exit:
         raise InputError(str(tables[0]), None, "has no rows")
     say_lines("\n".join(summary_of_runs(rows)))
     return Exit.INVALID if disagreements(rows) else Exit.DONE
-
-
-@bench.command()
-@_TABLES
-@output_option("FOLDER", "Folder for the pictures, as PNG and SVG.", required=True)
-def plots(tables: tuple[Path, ...], output: Path) -> Exit:
-    """Draw tables: cactus, growth, scatter against the strongest rival, performance profile."""
-    from cellcolor.door.extras import extras_for
-    from cellcolor.lab.runs.statistics import plots_of
-
-    with extras_for("plots"):
-        from cellcolor.pictures.plots import render_plot
-    rows = _read(tables)
-    if not rows:
-        raise InputError(str(tables[0]), None, "has no runs of solvers")
-    with system_errors(output, "cannot be made"):
-        output.mkdir(parents=True, exist_ok=True)
-    for name, plot in plots_of(rows).items():
-        for suffix, kind in (("png", PNG), ("svg", SVG)):
-            file = output / f"{name}.{suffix}"
-            write([Output(file, kind, [render_plot(plot, suffix)])], tables)
-            say(file)
-    return Exit.DONE
 
 
 def _read(tables: Sequence[Path]) -> list[Row]:

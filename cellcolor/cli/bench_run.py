@@ -13,7 +13,7 @@ from typing import Any
 
 from cellcolor.cli.ending import Exit
 from cellcolor.cli.inputs import read_instance
-from cellcolor.cli.progress import progress_bar, workers_for
+from cellcolor.cli.progress import progress_bar
 from cellcolor.cli.terminal import complain, say, say_lines, shown
 from cellcolor.data.wording import count
 from cellcolor.door.shipped import find_file, library
@@ -30,6 +30,7 @@ from cellcolor.lab.runs.sweep import (
     taking_turns,
 )
 from cellcolor.lab.runs.table import TableFile
+from cellcolor.lab.workers import Workers
 
 _LIBRARY = "library"
 """Stands before the families of the library's graphs (docs/library.md)."""
@@ -40,7 +41,6 @@ def run_solvers(
     solvers: Sequence[str],
     seeds: Sequence[int],
     jobs: int,
-    cluster: str | None,
     output: Path | None,
     **wanted: Any,
 ) -> Exit:
@@ -77,7 +77,7 @@ def run_solvers(
         made: list[Row] = []
         total = len(specimens) * sweep.runs_of_each
         try:
-            with workers_for(jobs, cluster) as workers, progress_bar(total) as advance:
+            with Workers(jobs) as workers, progress_bar(total) as advance:
                 for row in sweep.run(workers):
                     made.append(row)
                     if file is not None:
@@ -91,7 +91,8 @@ def run_solvers(
         say_lines("\n".join(summary_of_runs(made)))
     already = f", {sweep.skipped} left out or already there" if sweep.skipped else ""
     proved = sum(row.solved for row in made)
-    say(f"{count(len(made), 'run')}, {proved} with a proved minimum{already}")
+    if made or not bad:  # otherwise what is wrong is all there is to say
+        say(f"{count(len(made), 'run')}, {proved} with a proved minimum{already}")
     for line in wrong:
         complain(line)
     if bad:

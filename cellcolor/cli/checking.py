@@ -11,10 +11,9 @@ from cellcolor.checker.claimed_numbers import claims
 from cellcolor.checker.division import check_scheme
 from cellcolor.cli.ending import Exit
 from cellcolor.cli.inputs import STANDARD_INPUT, input_file, name_of, read_subject
-from cellcolor.cli.motion import check_painted, write_painted
 from cellcolor.cli.progress import stages_of
 from cellcolor.cli.terminal import complain, print_json
-from cellcolor.cli.verdict_lines import say_better, say_plan, say_solution, say_trajectory
+from cellcolor.cli.verdict_lines import say_plan, say_solution, say_trajectory
 from cellcolor.data.plan import Plan
 from cellcolor.data.schemes import read_schemes
 from cellcolor.data.solution import SchemeKey, Solution, scheme_key
@@ -61,7 +60,6 @@ class Request:
     left_alone: Place | None
     tolerance: str | None
     cache: Path | None
-    better: Path | None
     require_optimal: bool
     as_json: bool
 
@@ -82,7 +80,7 @@ def check_files(request: Request) -> Exit:
         with input_file(request.claim) as copy:
             claim = copy if request.claim == STANDARD_INPUT else find_claim(request.claim)
             form = format_of_claim(claim)  # anything else is read as a solution
-            for option in ("cache", "better", "require_optimal"):
+            for option in ("cache", "require_optimal"):
                 if getattr(request, option) and form != Plan.FORMAT:
                     message = f"goes with a plan; {name_of(request.claim)} is none"
                     raise InputError(None, f"--{option.replace('_', '-')}", message)
@@ -102,14 +100,11 @@ def check_files(request: Request) -> Exit:
 
 
 def _check_solution(request: Request, claim: Path) -> Exit:
-    subject = request.opened(NEVER)
-    verdict = _on_solution(subject, claim, request.claim)
+    verdict = _on_solution(request.opened(NEVER), claim, request.claim)
     if request.as_json:
         print_json(verdict.to_document())
     else:
         say_solution(name_of(request.claim), verdict)
-        if verdict.valid:
-            say_better(subject.graph(), Solution.read(claim), verdict)
     return Exit.DONE if verdict.valid else Exit.INVALID
 
 
@@ -162,7 +157,7 @@ def _checked(found: BoundVerdict) -> CheckedBound:
 
 
 def _check_plan(request: Request, claim: Path) -> Exit:
-    """Say what is known of a plan; write a better painting where one is known and asked for."""
+    """Say what is known of a plan."""
     subject = request.opened(request.deadline)
     if not subject.names_surface:
         if subject.path is None and subject.given_instance is not None:
@@ -170,9 +165,6 @@ def _check_plan(request: Request, claim: Path) -> Exit:
         names = f"{request.subject} names none"
         message = f"is a plan, which goes with a labelled surface; {names}"
         raise InputError(name_of(request.claim), "format", message)
-    inputs = [path for path in (subject.path, subject.surface_path, claim) if path is not None]
-    if request.better is not None:
-        check_painted(request.better, inputs)
     if request.cache is not None:
         is_folder_or_nothing(request.cache)
 
@@ -180,8 +172,6 @@ def _check_plan(request: Request, claim: Path) -> Exit:
 
     oracle = KeepingOracle(subject, request.seconds, request.cache)
     found = oracle.judge(claim, deadline=request.deadline)
-    if request.better is not None and found.improvement is not None:
-        write_painted(found.improvement.better.painted, request.better, inputs)
     if request.as_json:
         print_json(_described(request.claim, found).to_document())
     else:

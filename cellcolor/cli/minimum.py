@@ -24,7 +24,6 @@ from cellcolor.cli.options import (
     shared,
 )
 from cellcolor.cli.terminal import apart_from, complain, say, say_lines
-from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.writing import (
@@ -37,6 +36,8 @@ from cellcolor.files.writing import (
 )
 from cellcolor.pictures.registry import PICTURES
 from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, PAPERS, REFERENCE, solver_names
+
+_SCHEMES = 1000  # that are listed unless --limit says otherwise
 
 
 @cellcolor.command()
@@ -111,68 +112,36 @@ def build(source: Path, output: Path) -> Exit:
     "Corridors that may cross an edge, in search space surface.  [default: 2]",
     metavar="K",
 )
-@shared("cover", "required", "left_alone", "tolerance")
+@shared("cover", "left_alone", "tolerance")
 @click.option("--all", "every", is_flag=True, help="List all optimal schemes.")
-@option(
-    "--warm-start",
-    PATH,
-    "Start from this solution of the one file given.",
-    to="start",
-    metavar="SOLUTION.json",
-)
 @option("--limit", Count(1), "With --all, stop after this many schemes.  [default: 1000]")
-@option(
-    "--picture",
-    PATH,
-    "Best division and bounds over the seconds of the search.",
-    metavar="OUT.(png|svg)",
-)
 @option("--time-limit", SECONDS, "Seconds for each file.")
 @shared("workers", "seed")
 @json_option("Print JSON Lines, one solution per file.")
-def solve(
-    files: tuple[Path, ...], every: bool, limit: int | None, picture: Path | None, **given: Any
-) -> Exit:
+def solve(files: tuple[Path, ...], every: bool, limit: int | None, **given: Any) -> Exit:
     """Find the fewest segments of instances, labelled surfaces and scenes.
 
     FILE may be the name of a shipped one, such as wok: a file of that name goes first. That holds
     for the other commands as well; cellcolor.library() lists the names in Python.
     """
     begun = time.monotonic()
-    asked = {name for name, value in given.items() if value is not None}
     space = given["search_space"]
     wrong = {
-        "--strands needs --search-space surface": "strands" in asked and space == "paper",
+        "--strands needs --search-space surface": given["strands"] and space == "paper",
         "--limit needs --all": limit is not None and not every,
         "--all needs --search-space paper: schemes are defined only there": (
             every and space == "surface"
-        ),
-        "--picture is of a single file": picture is not None and len(files) > 1,
-        "--warm-start takes a single file": "start" in asked and len(files) > 1,
-        "--required needs --cover: without it everything has to be": (
-            "required" in asked and "cover" not in asked
         ),
     }
     for message, is_wrong in wrong.items():
         if is_wrong:
             raise click.UsageError(message)
 
-    from cellcolor.cli.solving import Request, solve_files
+    from cellcolor.cli.solving import solve_files
     from cellcolor.solvers.interface import STRANDS
 
-    own = {name: given.pop(name) for name in ("output", "tolerance", "time_limit", "as_json")}
     given["strands"] = given["strands"] or STRANDS[space]
-    return solve_files(
-        Request(
-            files=files,
-            every=every,
-            limit=limit,
-            picture=picture,
-            search=given,
-            begun=begun,
-            **own,
-        )
-    )
+    return solve_files(files, schemes=(limit or _SCHEMES) if every else None, begun=begun, **given)
 
 
 @cellcolor.command()
@@ -193,13 +162,6 @@ def solve(
     "For a plan: keep the proven range there, so that the next plan on the same surface needs no "
     "proof.",
     metavar="FOLDER",
-)
-@option(
-    "--better",
-    PATH,
-    "For a plan that can be beaten: write a better painting, and beside it the plan as "
-    "OUT.plan.json.",
-    metavar="OUT.surface.json",
 )
 @click.option(
     "--require-optimal",
@@ -225,84 +187,43 @@ def check(seconds: float, **given: Any) -> Exit:
 
 
 @cellcolor.command()
-@click.argument(
-    "files",
-    metavar="FILE [SOLUTION.json|PLAN.json] | FOLDER…",
-    nargs=-1,
-    required=True,
-    type=INPUT,
-)
+@click.argument("file", metavar="FILE", type=INPUT)
+@click.argument("claim", metavar="[SOLUTION.json|PLAN.json]", required=False, type=INPUT)
 @output_option("OUT.(html|png|svg)", "The picture; the ending gives its format.", required=True)
 @option(
     "--view",
     click.Choice(list(PICTURES)),
-    f"The picture: {', '.join(PICTURES)}. The options below also choose one.",
+    f"The picture: {', '.join(PICTURES)}. The options below and a second file choose one as well.",
     metavar="NAME",
 )
 @option("--color", None, "Show where one color is available.", metavar="NAME|ID")
-@click.option(
-    "--reason",
-    is_flag=True,
-    help="Show why points are out of reach, in the best branch or in one --branch.",
-)
-@click.option("--graph", is_flag=True, help="The topological graph.")
 @option("--vertex", Count(0), "Show the arm at a vertex, in a --branch.")
 @option("--branch", None, "An inverse-kinematic branch.", metavar="NAME|ID")
-def show(
-    files: tuple[Path, ...], output: Path, view: str | None, reason: bool, graph: bool, **of: Any
-) -> Exit:
+def show(file: Path, claim: Path | None, output: Path, view: str | None, **of: Any) -> Exit:
     """Draw an instance, a labelled surface or a scene, by cell unless an option says otherwise.
 
-    With a solution after what was solved, or a plan on its surface: by segment. Of folders that
-    cellcolor plan has written: their reports on one page.
+    With a solution after what was solved, or a plan on its surface: by segment.
     """
-    if all(file.is_dir() for file in files):
-        from cellcolor.door.plan_files import compare_plans
-
-        compare_plans(files, output)
-        say(f"wrote {output}: {count(len(files), 'plan')}")
-        return Exit.DONE
-    if len(files) > 2:
-        raise click.UsageError("give one file to show, or one with its solution or plan")
-    implied = {
-        "color": of["color"] is not None,
-        "reasons": reason,
-        "graph": graph,
-        "arm": of["vertex"] is not None,
-        "segments": len(files) > 1,
-    }
-    asked = [name for name, is_asked in implied.items() if is_asked]
-    if view is not None and (reason or graph):
-        raise click.UsageError("--view cannot be combined with --reason and --graph")
-    if view is None and len(asked) > 1:
-        raise click.UsageError(
-            "--color, --reason, --graph, --vertex and a solution exclude each other"
-        )
-
     from cellcolor.cli.inputs import open_file
     from cellcolor.data.plan import Plan
-    from cellcolor.door.drawing import View, draw, kind_of_picture, picture_of
+    from cellcolor.door.drawing import draw, kind_of_picture, view_of
     from cellcolor.door.extras import extras_for
     from cellcolor.door.reading import format_of_claim
 
+    inputs = [file, *filter(None, [claim])]
     kind = kind_of_picture(output)
-    check_output(output, kind, files)
-    name = view or (asked[0] if asked else "cells")
-    claim = files[1] if len(files) > 1 else None
-    if name == "segments" and claim is not None and format_of_claim(claim) == Plan.FORMAT:
-        name = "plan"
-    of["plan" if name == "plan" else "solution"] = claim
-    with extras_for(files[0]):
+    check_output(output, kind, inputs)
+    of["plan" if claim and format_of_claim(claim) == Plan.FORMAT else "solution"] = claim
+    with extras_for(file):
         try:
-            chosen = View(name, **of)
-            picture = picture_of(chosen)
+            seen, picture = view_of(view, **of)
         except InputError as error:  # what is wrong is an option, not a file
             raise click.UsageError(str(error)) from error
-    subject = open_file(files[0])
+    subject = open_file(file)
     with extras_for(output):
-        drawing = draw(picture, subject, chosen)
+        drawing = draw(picture, subject, seen)
         content = drawing.render(output.suffix)
     INTERRUPTS.check()
-    write([Output(output, kind, [content])], files)
+    write([Output(output, kind, [content])], inputs)
     say(f"wrote {output}: {drawing}")
     return Exit.DONE

@@ -33,7 +33,6 @@ from cellcolor.tool_paths.registry import DEFAULT_PATTERN, PATTERNS, pattern_nam
 if TYPE_CHECKING:
     from cellcolor.door.planned import UnfinishedPlan
     from cellcolor.door.subject import Subject
-    from cellcolor.painting.border_report import BorderReport
     from cellcolor.painting.paint import Painted
 
 _ENDING = ".surface.json"
@@ -63,8 +62,8 @@ _PATTERN = option(
 @option(
     "--tool-radius",
     METRES,
-    "Of the tool's footprint, m: corridors are made as wide as that where possible.  [default: the "
-    "scene's, or one mean mesh edge]",
+    "Of the tool's footprint, m: for a better posture a border bends about as sharply as its rim.  "
+    "[default: the scene's, or one mean mesh edge]",
 )
 @shared("time_limit")
 def paint(
@@ -74,7 +73,7 @@ def paint(
 
     FILE is a labelled surface, a scene, or an instance that names its surface. Where a cell is
     divided and its mesh is too coarse for that, the surface is refined. Borders between segments
-    are then moved, so that corridors are wide and borders short.
+    are then moved, so that they are short.
     """
     from cellcolor.cli.inputs import read_subject
     from cellcolor.data.solution import Solution
@@ -108,7 +107,8 @@ def paint(
 def _about(painted: Painted) -> Iterator[str]:
     """Borders of a painting, what a scene refused of it, and segments that are one on the mesh."""
     if painted.borders is not None and painted.segments > 1:
-        yield from _borders(painted.borders)
+        before, after = painted.borders.before, painted.borders.after
+        yield f"borders: {after.length_m:.4g} m, {before.length_m:.4g} m as first drawn"
     if len(painted.minima) > 1:
         yield f"the scene rejects copied colors: {count(painted.minima[0], 'segment')} as solved,"
         yield f"{painted.segments} after solving again with the true colors of the refined surface"
@@ -118,22 +118,6 @@ def _about(painted: Painted) -> Iterator[str]:
         yield f"the scene refuses {refused} of the painting all the same, {first} first"
     for group in painted.merged:
         yield f"segments {listed(group)} of the solution touch in one color: painted, they are one"
-
-
-def _borders(report: BorderReport) -> Iterator[str]:
-    before, after = report.before, report.after
-    yield f"borders: {after.length_m:.4g} m, {before.length_m:.4g} m as first drawn"
-    if after.narrowest is not None:
-        x, y, z = after.narrowest.place
-        width, number = after.narrowest.width_m, after.narrowest.segment
-        place = f"({x:.4g}, {y:.4g}, {z:.4g})"
-        yield f"narrowest corridor: {width:.4g} m at {place}, of segment {number}"
-    tool = f"a footprint of radius {report.tool_radius_m:.4g} m"
-    if report.stays_inside:
-        yield f"{tool} stays inside its segments"
-    else:
-        places = f", {count(after.narrow, 'corridor')} too narrow" if after.narrow else ""
-        yield f"{tool} passes over {after.repeated_m2:.3g} m² of other segments{places}"
 
 
 def check_painted(output: Path, inputs: Sequence[Path]) -> Path:
@@ -207,7 +191,7 @@ def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
 @click.argument("scene", metavar="SCENE.toml", type=INPUT)
 @output_option("FOLDER", "Folder for all files; it is created if it does not exist.", required=True)
 @_PATTERN
-@shared("cover", "required", "left_alone", "tolerance")
+@shared("cover", "left_alone", "tolerance")
 @option(
     "--ask",
     None,
@@ -233,9 +217,6 @@ def plan(
     for other programs, and report.html to look at. The options below --time-limit replace keys of
     the setup's table [motion].
     """
-    if wanted["required"] is not None and wanted["cover"] is None:
-        raise click.UsageError("--required needs --cover: without it everything has to be")
-
     from cellcolor.cli.inputs import with_tolerance
     from cellcolor.door.plan_files import check_folder
     from cellcolor.door.planned import NothingCovered, PlanOutOfTime

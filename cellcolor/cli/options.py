@@ -201,9 +201,6 @@ _SHARED = {
         SHARE,
         "Cover only this share of the area, 0 to 1, with the fewest lift-offs that do.",
     ),
-    "required": option(
-        "--required", None, f"What has to be covered: {_PLACE}", metavar="PLACE", callback=_place
-    ),
     "left_alone": option(
         "--left-alone",
         None,
@@ -232,13 +229,6 @@ _SHARED = {
     "workers": option("--workers", Count(1, 1000), "CP-SAT's search workers."),
     "seed": option("--seed", Count(0, 2**31 - 1), "Of everything random.", default=0),
     "jobs": option("--jobs", Count(1), "Number of processes at a time.", default=1),
-    "cluster": option(
-        "--cluster",
-        None,
-        "The scheduler of a Dask cluster that does the work, such as tcp://10.0.0.1:8786, instead "
-        "of processes here.",
-        metavar="ADDRESS",
-    ),
     "search_space": option(
         "--search-space",
         click.Choice(["paper", "surface"]),

@@ -1,33 +1,24 @@
-"""Who does long work, and how far it is, on standard error."""
+"""How far long work is, on standard error."""
 
 from __future__ import annotations
 
 import sys
-import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from cellcolor.cli.ending import INTERRUPTS
 from cellcolor.cli.terminal import shown
-from cellcolor.data.wording import count
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import naming
-
-if TYPE_CHECKING:
-    from cellcolor.lab.workers import Workers
-
-_MINUTE = 60.0  # s
 
 
 @contextmanager
 def line_of(file: Path, work: str) -> Iterator[Callable[[str], None]]:
-    """A line with the time spent and what is being done; without a terminal one each minute."""
+    """A line with the time spent and what is being done, where somebody watches."""
     name = shown(file.name)
     if not sys.stderr.isatty():
-        with _each_minute(f"{name}: {work}") as show:
-            yield lambda text: show(f"{name}: {text}")
+        yield lambda _: None
         return
     from rich.console import Console
     from rich.progress import Progress as Display
@@ -74,30 +65,6 @@ def at_work(file: Path, work: str, late: str) -> Iterator[Callable[[str], None]]
 
 
 @contextmanager
-def _each_minute(text: str) -> Iterator[Callable[[str], None]]:
-    """What is being done, on standard error, where no line can be replaced."""
-    latest, ended = text, threading.Event()
-
-    def show(text: str) -> None:
-        nonlocal latest
-        latest = text
-
-    def tell() -> None:
-        minutes = 0
-        while not ended.wait(_MINUTE):
-            minutes += 1
-            print(f"{latest}, {count(minutes, 'minute')} so far", file=sys.stderr, flush=True)
-
-    teller = threading.Thread(target=tell, daemon=True)
-    teller.start()
-    try:
-        yield show
-    finally:
-        ended.set()
-        teller.join()
-
-
-@contextmanager
 def progress_bar(total: int) -> Iterator[Callable[[int, str], None]]:
     """A bar on standard error, only where somebody watches; told what is done, and a text."""
     if not sys.stderr.isatty():
@@ -113,24 +80,3 @@ def progress_bar(total: int) -> Iterator[Callable[[int, str], None]]:
     with bar:
         task = bar.add_task("", total=total)
         yield lambda done, text: bar.update(task, completed=done, description=text)
-
-
-def workers_for(jobs: int, cluster: str | None) -> Workers:
-    """Processes of this machine, or those of a Dask cluster.
-
-    Args:
-        jobs: pieces of work at a time; a cluster says itself how many it does.
-        cluster: the address of its scheduler.
-
-    Raises:
-        InputError: there is no such cluster, or no Dask.
-    """
-    if cluster is None:
-        from cellcolor.lab.workers import LocalWorkers
-
-        return LocalWorkers(jobs)
-    from cellcolor.door.extras import extras_for
-
-    with extras_for("--cluster"):
-        from cellcolor.lab.cluster import ClusterWorkers
-    return ClusterWorkers(cluster)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
 
 from rich import box
 from rich.console import Console
@@ -74,24 +73,6 @@ def print_solution(instance: Instance, solution: Solution) -> None:
     strands = f" with {solution.strands} strands" if space == "surface" else ""
     say(f"{solution.seconds:.2f} s with {solution.solver}, search space {space}{strands}")
     say()
-
-
-def print_overview(solved: Sequence[tuple[Path, Instance, Solution]]) -> None:
-    """A line for each file."""
-    numbers = ("cells", "segments", "lift-offs", "at least", "seconds")
-    columns = {"file": "fold"} | dict.fromkeys(numbers, "right") | {"status": "left"}
-    rows = [
-        (
-            shown(file),
-            str(len(instance.cells)),
-            *("none found" if n is None else str(n) for n in (found.segments, found.lift_offs)),
-            str(found.lower_bound),
-            f"{found.seconds:.2f}",
-            found.status + ", for any division" * found.proved_for_surface,
-        )
-        for file, instance, found in solved
-    ]
-    console().print(table_of(columns, rows))
 
 
 def _segments(instance: Instance, solution: Solution, shares: Shares) -> Table:

@@ -53,10 +53,7 @@ def shortened(text: str) -> str:
 
 def print_json(document: Mapping[str, Any]) -> None:
     """Print one line of JSON Lines, at once."""
-    text = json.dumps(document, ensure_ascii=False)
-    if not text.isprintable():
-        text = "".join(c if c.isprintable() else json.dumps(c)[1:-1] for c in text)
-    print(text, flush=True)
+    print(json.dumps(document), flush=True)
 
 
 class Listener:
@@ -105,11 +102,6 @@ class Listener:
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
-
-
-def unheard() -> bool:
-    """Whether nobody gets what is printed on standard output."""
-    return isinstance(sys.stdout, Listener) and sys.stdout.lost is not None
 
 
 @contextmanager

@@ -6,12 +6,9 @@ import json
 from typing import TYPE_CHECKING
 
 from cellcolor.cli.terminal import say
-from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.data.verdicts import SolutionVerdict
 from cellcolor.data.wording import count, segments_and_lift_offs
-from cellcolor.door.shipped import library
 
 if TYPE_CHECKING:
     from cellcolor.oracle import Verdict
@@ -61,20 +58,6 @@ def _say_bounds(verdict: SolutionVerdict) -> None:
     if verdict.bounds_by_solver:
         bounds = count(len(verdict.bounds), "bound")
         say(f"  {verdict.bounds_by_solver} of {bounds} by {solver}")
-
-
-def say_better(instance: Instance, solution: Solution, verdict: SolutionVerdict) -> None:
-    """Say where a valid solution is better than the index, and how to send it.
-
-    A bound counts if its certificate was verified, so that nothing is taken on trust.
-    """
-    bounds = [(b.holds_for, b.value, True) for b in verdict.bounds if b.outcome == "verified"]
-    for entry in library().index.entries:
-        if entry.fingerprint == instance.sha256 and (found := entry.beaten_by(solution, bounds)):
-            for line in found:
-                say(f"  better than the library's index: {line}")
-            name = f"{entry.name}.{'surface.' * (solution.search_space == 'surface')}solution.json"
-            say(f"  please send it as {name} (docs/library.md, How to contribute a better bound)")
 
 
 def say_trajectory(name: str, verdict: TrajectoryVerdict) -> None:

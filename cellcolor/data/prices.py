@@ -1,8 +1,7 @@
-"""How high a price may be, for what adds prices and for the command line.
+"""How high a price may be, for what adds prices and for the command line; and shares.
 
-Prices are added in floating point, which has 53 bits. Up to these limits a sum of prices is right
-to far less than a thousandth of a lift-off or of a square centimeter. Far above them a segment more
-would not change the sum.
+Prices are added in floating point, which has 53 bits. Up to this limit a sum of prices is right to
+far less than a thousandth of a lift-off. Far above it a segment more would not change the sum.
 """
 
 from __future__ import annotations
@@ -10,23 +9,20 @@ from __future__ import annotations
 from cellcolor.errors import InputError
 
 MOST_PRICE = 1_000_000
-"""Of a change-over, or of all that is left uncovered, in lift-offs."""
-
-MOST_CM2 = 1_000_000_000
-"""Of a lift-off, in square centimeters."""
+"""Of a change-over, in lift-offs."""
 
 _BINARY = 1e-6
 """How far 1000 times a price with three decimals may be from a whole number, in floating point."""
 
 
-def check_price(name: str, price: float, least: int = 0, most: int = MOST_PRICE) -> None:
-    """Refuse a price that is no number or out of its range.
+def check_share(name: str, share: float | None) -> None:
+    """Refuse a share that is not from 0 to 1; None is none.
 
     Raises:
-        InputError: it is; names the price and the range.
+        InputError: it is not.
     """
-    if not least <= price <= most:
-        raise InputError(None, name, f"must be a number from {least} to {most}, is {price:g}")
+    if share is not None and not 0 <= share <= 1:
+        raise InputError(None, name, f"must be from 0 to 1, is {share:g}")
 
 
 def check_change_over(price: float) -> None:
@@ -35,7 +31,9 @@ def check_change_over(price: float) -> None:
     Raises:
         InputError: it is out of its range, or finer than a thousandth of a lift-off.
     """
-    check_price("change_over", price, 1)
+    if not 1 <= price <= MOST_PRICE:
+        message = f"must be a number from 1 to {MOST_PRICE}, is {price:g}"
+        raise InputError(None, "change_over", message)
     if abs(1000 * price - round(1000 * price)) > _BINARY:
         message = f"must have no more than three decimals, is {price}"
         raise InputError(None, "change_over", message)

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields
 from typing import Any, TypedDict
 
 from cellcolor.deadline import Deadline, TimeLimit
-from cellcolor.door.leaving_out import Wanted
 from cellcolor.questions.places import Place
 from cellcolor.solvers.interface import Options
 
@@ -47,13 +45,17 @@ class SearchAndTell(Search, total=False):
 
 
 class SearchOfAPart(Search, total=False):
-    """The same, with what has to be covered: the attributes of
-    :class:`~cellcolor.door.leaving_out.Wanted`; without any of them it is everything."""
+    """The same, with what has to be covered, everything if it is left out.
+
+    Attributes:
+        cover: the share of the area that can be covered and is not left alone which has to be, 0
+            to 1. What is best left out is settled first, as by ``tradeoff``.
+        left_alone: vertices that must not be covered: a mask (n,), a
+            :class:`~cellcolor.questions.places.WorldBox`, or what a labelled surface gives up.
+    """
 
     cover: float | None
-    required: Place | None
     left_alone: Place | None
-    uncovered_price: float | None
 
 
 def begun(given: Work) -> tuple[Deadline, Telling]:
@@ -77,17 +79,6 @@ def options_of(given: Search, kind: type[Search] = SearchAndTell) -> Options:
     _check_names(given, kind)
     workers, seed = given.get("workers"), given.get("seed", 0)
     return Options(deadline=Deadline.of(given.get("time_limit")), workers=workers, seed=seed)
-
-
-def wanted_of(given: SearchOfAPart) -> Wanted:
-    """What has to be covered.
-
-    Raises:
-        InputError: as of :class:`~cellcolor.door.leaving_out.Wanted`.
-    """
-    known = {field.name for field in fields(Wanted)}
-    members: dict[str, Any] = {name: own for name, own in given.items() if name in known}
-    return Wanted(**members)
 
 
 def _check_names(given: Mapping[str, Any], kind: type) -> None:

@@ -9,12 +9,11 @@ from functools import cache
 from numbers import Integral
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import check_solution
 from cellcolor.data.plan import Plan
-from cellcolor.data.plot import Curve, Plot
 from cellcolor.data.solution import Solution
 from cellcolor.door.extras import extras_for
 from cellcolor.door.result import Result
@@ -163,16 +162,20 @@ def show(
     if isinstance(solution, Result):
         solution = solution.solution
     subject = source.subject if isinstance(source, Result) else open_subject(source)
-    if view is None:
-        asked = {"color": color, "arm": vertex, "segments": solution, "plan": plan}
-        names = [name for name, given in asked.items() if given is not None]
-        if len(names) > 1:
-            raise InputError(None, None, "one of color, vertex, solution and plan at a time")
-        view = names[0] if names else _usual_view(source, subject)
+    usual = _usual_view(source, subject)
     if view in ("segments", "why") and solution is None and isinstance(source, Result):
         solution = source.solution
-    seen = View(view, solution, color, vertex, branch, plan, marked)
-    drawing = draw(picture_of(seen), subject, seen)
+    seen, picture = view_of(
+        view,
+        usual,
+        solution=solution,
+        color=color,
+        vertex=vertex,
+        branch=branch,
+        plan=plan,
+        marked=marked,
+    )
+    drawing = draw(picture, subject, seen)
     if path is not None:
         drawing.save(path)
     return drawing
@@ -186,27 +189,39 @@ def _usual_view(source: Solvable | Result, subject: Subject) -> str:
     return "segments" if found else "cells"
 
 
-def picture_of(view: View) -> Picture:
-    """The picture that a view names, after checking the view's options.
+def view_of(name: str | None, usual: str = "cells", **options: Any) -> tuple[View, Picture]:
+    """The picture that is asked for, after checking its options.
+
+    Args:
+        name: of the picture; None for the one that an option asks for.
+        usual: the picture if none does.
+        options: the other attributes of a :class:`View`.
 
     Raises:
-        InputError: there is no such picture, it needs another option, or it does not take one.
+        InputError: options ask for several pictures; there is no such picture, it needs another
+            option, or it does not take one.
     """
-    picture = make_picture(view.name)
+    if name is None:
+        asked = {"color": "color", "vertex": "arm", "solution": "segments", "plan": "plan"}
+        names = [own for part, own in asked.items() if options.get(part) is not None]
+        if len(names) > 1:
+            raise InputError(None, None, "one of color, vertex, solution and plan at a time")
+        name = names[0] if names else usual
+    picture, view = make_picture(name), View(name, **options)
     for part in ("color", "vertex", "branch", "solution", "plan", "marked"):
         given = getattr(view, part)
         if given is None and part in picture.needs:
-            raise InputError(None, part, f"the picture {view.name} needs it")
+            raise InputError(None, part, f"the picture {name} needs it")
         if given is not None and part not in picture.needs + picture.takes:
-            raise InputError(None, part, f"the picture {view.name} does not take it")
-    return picture
+            raise InputError(None, part, f"the picture {name} does not take it")
+    return view, picture
 
 
 def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
     """Draw a picture from the inputs that it declares (``needs`` and ``takes``).
 
     Args:
-        picture: the picture of the view, see :func:`picture_of`.
+        picture: the picture of the view, see :func:`view_of`.
         subject: the source of the inputs; they are made only if the picture uses them.
         view: the options.
 
@@ -247,7 +262,7 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
         "branch": branch,
     }
     if "surface" in picture.needs and not subject.names_surface:
-        message = f"{subject.why_no_surface}; only the graph can be shown (--graph)"
+        message = f"{subject.why_no_surface}; only the graph can be shown (--view graph)"
         raise InputError(file, "surface", message)
     optional = ("color", "vertex", "branch", "solution", "marked")
     missing = {part for part in optional if getattr(view, part) is None}
@@ -288,43 +303,6 @@ def _checked(
     if solution.cells is None:
         raise InputError(file, "cells", "no division was found")
     return solution, report.bounds
-
-
-def draw_search(result: Result, path: str | PathLike[str]) -> None:
-    """Draw how a result was found: best division and bound over the seconds of its search.
-
-    What each kind of bound proved in the end is beside them.
-
-    Args:
-        path: the file, .png or .svg.
-
-    Raises:
-        InputError: another suffix, or the file cannot be written.
-    """
-
-    def render(form: str) -> bytes:
-        from cellcolor.pictures.plots import render_plot
-
-        return render_plot(plot_of_gap(result), form)
-
-    save_plot(path, render)
-
-
-def plot_of_gap(result: Result) -> Plot:
-    """Best division and bound over the seconds of a search, and each kind of bound at its end."""
-    solution, gap = result.solution, result.gap
-    end = gap[-1].seconds if gap else 0.0
-    best = tuple((step.seconds, step.segments) for step in gap if step.segments is not None)
-    curves = [
-        Curve(f"{bound.kind}: {bound.value}", ((0.0, bound.value), (end, bound.value)))
-        for bound in solution.bounds or ()
-    ]
-    curves += [
-        Curve("lower bound", tuple((step.seconds, step.lower_bound) for step in gap)),
-        Curve("best division", best),
-    ]
-    title = f"{result.instance.name}: {result.solution.status}"
-    return Plot(title, "seconds of the search", "segments", tuple(curves), joined="steps")
 
 
 def save_plot(path: str | PathLike[str], render: Callable[[str], bytes]) -> None:

@@ -15,7 +15,6 @@ DISTRIBUTION = "fewest-lift-offs"
 """What to install; ``cellcolor`` on the Python Package Index is somebody else's program."""
 
 _EXTRAS = {
-    "distributed": "cluster",
     "matplotlib": "viz",
     "coal": "frontend",
     "fcl": "frontend",
@@ -25,13 +24,12 @@ _EXTRAS = {
     "trimesh": "frontend",
     "gpytoolbox": "parts",
     "potpourri3d": "motion",
-    "mcap": "motion",
 }
 DISTRIBUTIONS = (
     *("click", "networkx", "numpy", "ortools", "pydantic", "rich"),
-    *("pin", "python-fcl", "libigl", "scipy", "trimesh", "EAIK", "potpourri3d", "mcap"),
+    *("pin", "python-fcl", "libigl", "scipy", "trimesh", "EAIK", "potpourri3d"),
     *("gpytoolbox", "matplotlib"),
-    *("clingo", "highspy", "pychoco", "pyscipopt", "python-sat", "dask", "distributed"),
+    *("clingo", "highspy", "pychoco", "pyscipopt", "python-sat"),
 )
 """What the package and its extras need, except those for tests and docs."""
 

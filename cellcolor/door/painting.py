@@ -40,8 +40,8 @@ def paint(
         source: what was solved: a labelled surface, a scene, or an instance that names its
             surface; its file, its shipped name, the value.
         solution: its solution, or the file of one.
-        tool_radius_m: of the tool's footprint, for which borders between segments leave room; None
-            for the radius of the scene's setup, or else for one mean mesh edge.
+        tool_radius_m: of the tool's footprint: for a better posture a border bends about as sharply
+            as its rim; None for that of the scene's setup, or else for one mean mesh edge.
         time_limit: seconds, None for no limit.
 
     Returns:

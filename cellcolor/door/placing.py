@@ -1,30 +1,33 @@
-"""``cellcolor.place``: where a part should stand."""
+"""``cellcolor.place``: where a part should stand, asked in this process or in several."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
+from cellcolor.deadline import Deadline
 from cellcolor.door.asked import Work, begun
-from cellcolor.door.drawing import save_plot
 from cellcolor.door.extras import extras_for
-from cellcolor.door.placements_asked import AskedPlacements
 from cellcolor.door.subject import scene_or_file
-from cellcolor.errors import InputError
-from cellcolor.files.paths import path_of
-from cellcolor.lab.workers import LocalWorkers, Workers
-from cellcolor.questions.placements import PlacementQuestion, Placements
+from cellcolor.errors import CellcolorError, InputError
+from cellcolor.lab.workers import Task, Workers, as_they_end
+from cellcolor.questions.placements import PlacedMinimum, PlacementQuestion, Placements, Pose
 
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene
+
+_BATCH = 32  # placements per task; reading the scene takes as long as one or two of them
+_ATTEMPTS = 2  # how often a task is tried whose process was lost
+_ENDING = 10.0  # s that a process may take beyond its time
+_ALL_DAY = 86_400.0  # s, the limit of a process if there is no time limit
 
 
 def place(
     scene: str | PathLike[str] | Scene,
     *,
-    table: str | PathLike[str] | None = None,
     jobs: int | Workers = 1,
     **question: Any,
 ) -> Placements:
@@ -34,16 +37,13 @@ def place(
 
     Args:
         scene: its file, its shipped name, or the value.
-        table: a CSV file in which each row is kept as it is proved; one that is there is continued,
-            and what it has is not asked again.
         jobs: processes at a time, or who does the work.
         **question: the ranges ``x``, ``y``, ``z``, ``roll``, ``pitch`` and ``yaw``, and whatever
             else :class:`~cellcolor.questions.placements.PlacementQuestion` and
             :class:`~cellcolor.door.asked.Work` have.
 
     Raises:
-        InputError: the scene cannot be used; a range, a share or a number is none; or the table is
-            damaged or of another scene.
+        InputError: the scene cannot be used; or a range, a share or a number is none.
         OutOfTime: the time limit came before the scene itself was solved.
     """
     work: Any = {name: question.pop(name) for name in Work.__annotations__ if name in question}
@@ -61,29 +61,92 @@ def place(
     if not isinstance(jobs, int):
         workers = jobs
     elif jobs > 1:
-        workers = LocalWorkers(jobs)
-    file = None if table is None else path_of(table)
-    with (
-        AskedPlacements(own, file, asked, deadline, report) as placements,
-        workers as others,
-    ):
-        alone, many = partial(placements.minima, None), partial(placements.minima, others)
+        workers = Workers(jobs)
+    minima = _Minima(asked, deadline, report)
+    with workers as others:
+        alone, many = partial(minima, None), partial(minima, others)
         return search_places(own, asked, alone, many, deadline, report)
 
 
-def save_map(found: Placements, path: str | PathLike[str]) -> None:
-    """Draw the map of ``place(..., tiles=…)`` to a file .png or .svg.
+class _Minima:
+    """Computes the minima of placements, possibly in other processes, each of them once.
 
-    Raises:
-        InputError: no map was asked for; or as of :func:`~cellcolor.door.drawing.save_plot`.
+    Args:
+        question: whether the arm's base is moved instead of the part, and the seed.
+        deadline: for everything together.
+        report: is told how many placements are done.
     """
-    tiled = found.map
-    if tiled is None:
-        raise InputError(None, "tiles", "no map was asked for")
 
-    def render(form: str) -> bytes:
-        from cellcolor.pictures.plots import render_map
+    def __init__(
+        self, question: PlacementQuestion, deadline: Deadline, report: Callable[[str], None]
+    ) -> None:
+        self._question, self._deadline, self._report = question, deadline, report
+        self._known: dict[tuple[str, Pose], PlacedMinimum] = {}
+        self._done = 0
 
-        return render_map(found.name, tiled, found.here, found.best, form)
+    def __call__(
+        self,
+        workers: Workers | None,
+        scene: Scene,
+        mesh: str,
+        poses: Sequence[Pose],
+        cover: float | None = None,
+    ) -> list[PlacedMinimum]:
+        """A row for each placement, in order; fewer if the deadline comes first.
 
-    save_plot(path, render)
+        Args:
+            workers: the processes that compute; None for this one.
+            scene: its own placement does not matter.
+            mesh: the name of this scene's mesh.
+            cover: the share that is enough, for bounds where nothing better is known; the same for
+                all placements of a mesh. None for whole builds.
+
+        Raises:
+            OutOfTime: the deadline came before the first.
+            CellcolorError: a task failed, or its process was lost in every attempt.
+        """
+        self._deadline.check()
+        slots = 1 if workers is None else workers.slots
+        known = {
+            pose: row
+            for (its, pose), row in self._known.items()
+            if its == mesh and (cover is not None or not row.at_least)
+        }
+        new = [pose for pose in dict.fromkeys(poses) if pose not in known]
+        size = min(_BATCH, -(-len(new) // slots) or 1)
+        parts = [new[at : at + size] for at in range(0, len(new), size)]
+        for rows in self._asked(workers, scene, parts, cover):
+            known |= {row.pose: row for row in rows}
+            self._known |= {(mesh, row.pose): row for row in rows}
+            self._done += len(rows)
+            self._report(f"{self._done} placements")
+        return [known[pose] for pose in poses if pose in known]
+
+    def _asked(
+        self,
+        workers: Workers | None,
+        scene: Scene,
+        parts: Sequence[Sequence[Pose]],
+        cover: float | None,
+    ) -> Iterator[list[PlacedMinimum]]:
+        """The rows of each part, in the order in which the parts are done."""
+        from cellcolor.questions.placing import minima_at
+
+        how = 1, self._question.seed, self._question.base, cover
+        if workers is None:
+            for part in parts:
+                yield minima_at(scene, part, self._deadline.left, *how)
+            return
+        lost = list(parts)
+        for attempt in range(1, _ATTEMPTS + 1):
+            left = self._deadline.left
+            most = min(left, _ALL_DAY) + _ENDING
+            tasks = [(part, Task(minima_at, (scene, part, left, *how), most)) for part in lost]
+            lost = []
+            for part, ended in as_they_end(workers, tasks):
+                if ended.end in ("done", "timeout", "stopped"):
+                    yield ended.value or []
+                elif ended.end == "failed" or attempt == _ATTEMPTS:
+                    raise CellcolorError(f"placements could not be tried: {ended.error}")
+                else:  # the process was lost; the work is repeated
+                    lost.append(part)

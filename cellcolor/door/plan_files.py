@@ -1,8 +1,8 @@
-"""The files of a plan's folder (docs/plan.md), and several folders side by side."""
+"""The files of a plan's folder (docs/plan.md)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -15,7 +15,6 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.errors import InputError
 from cellcolor.exports.registry import EXPORTS
-from cellcolor.files.documents import read_text
 from cellcolor.files.writing import (
     HTML,
     SIDE_FILE,
@@ -95,18 +94,3 @@ def save(folder: Path, files: Mapping[str, bytes]) -> tuple[str, ...]:
     with make_folder(folder):
         write([Output(folder / name, KINDS[name], [files[name]]) for name in files])
     return tuple(files)
-
-
-def compare_plans(folders: Sequence[Path], page: Path) -> None:
-    """Write one page about several plans, such as of other patterns or places: ``plan``'s folders.
-
-    Raises:
-        InputError: a folder has no report; ``page`` does not end in .html, is no page of
-            cellcolor's, or cannot be written.
-    """
-    from cellcolor.pictures.side_by_side import render_side_by_side
-
-    if page.suffix != ".html":
-        raise InputError(str(page), None, "must end in .html: several plans are shown on a page")
-    pages = {folder.name: read_text(folder / "report.html") for folder in folders}
-    write([Output(page, HTML, [render_side_by_side(pages)])])

@@ -19,7 +19,7 @@ from cellcolor.door.plan_files import SIDE, SURFACE, save
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
-from cellcolor.exports.registry import PROGRAM, exported, programs_of, why_not
+from cellcolor.exports.registry import exported, programs_of, why_no_program
 from cellcolor.files.paths import path_of
 from cellcolor.painting.paint import Painted
 
@@ -106,7 +106,7 @@ class UnfinishedPlan:
 
         return render_report(self._report())
 
-    def _files(self, export_step_s: float | None = None) -> dict[str, bytes]:  # noqa: ARG002
+    def files(self, export_step_s: float | None = None) -> dict[str, bytes]:  # noqa: ARG002
         """All files but the page, by name, as far as the plan came."""
         surface, decomposition = self.subject.surface, self.subject.decomposition
         reference = SurfaceReference(SURFACE, tuple(decomposition.vertex_cell), surface.sha256)
@@ -142,7 +142,7 @@ class UnfinishedPlan:
             InputError: a plan that got further is there, or something else that is not
                 overwritten; or it cannot be written.
         """
-        return save(path_of(folder), self._files(export_step_s) | {"report.html": self.page()})
+        return save(path_of(folder), self.files(export_step_s) | {"report.html": self.page()})
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.missing}>"
@@ -157,6 +157,7 @@ class PlannedScene(UnfinishedPlan):
         verdict: an independent judge's.
         seconds: wall time of each stage.
         answered: what was asked besides, for the page; None if nothing was.
+        made: the contents of all files but the page, if they are made already.
     """
 
     result: Result
@@ -167,6 +168,7 @@ class PlannedScene(UnfinishedPlan):
     verdict: TrajectoryVerdict
     seconds: Mapping[str, float]
     answered: AnsweredScene | None = None
+    made: Mapping[str, bytes] | None = None
 
     @property
     def solution(self) -> Solution:
@@ -192,30 +194,24 @@ class PlannedScene(UnfinishedPlan):
     @property
     def lacking(self) -> tuple[str, ...]:
         """What was asked for, or is usual, and is not there, a line each with the reason."""
-        refused = why_not(self._motion())
-        return (*self.unanswered, *(f"{name}: not written: {why}" for name, why in refused.items()))
+        why = why_no_program(self._motion())
+        no_program = () if why is None else (f"program for a controller: not written: {why}",)
+        return (*self.unanswered, *no_program)
 
     @property
     def complete(self) -> bool:
         """Whether all that was asked for is there: answers, and the program of a controller."""
         asked = self.built.prepared.setup.controller is not None
-        return not self.unanswered and not (asked and PROGRAM in why_not(self._motion()))
+        return not self.unanswered and not (asked and why_no_program(self._motion()))
 
     def _motion(self, export_step_s: float | None = None) -> PlannedMotion:
         """What exports are made of."""
         from cellcolor.exports.interface import PlannedMotion
-        from cellcolor.pictures.surface_pictures import by_segment
 
-        painted, trajectory = self.painted, self.trajectory
-        fills = tuple(own.rgb for own in by_segment(painted).classes if own.number is not None)
         prepared = self.built.prepared
         task = prepared.setup.task
         return PlannedMotion(
-            surface=painted.surface,
-            segment_of=painted.segment_of,
-            fills=fills,
-            paths=self.paths,
-            trajectory=trajectory,
+            trajectory=self.trajectory,
             axes=axes_of(prepared),
             step_s=export_step_s,
             # A tool that stands off presses on nothing.
@@ -225,9 +221,12 @@ class PlannedScene(UnfinishedPlan):
             part=prepared.scene.placement.matrix,
         )
 
-    def _files(self, export_step_s: float | None = None) -> dict[str, bytes]:
+    def files(self, export_step_s: float | None = None) -> dict[str, bytes]:
+        if self.made is not None:
+            again = {} if export_step_s is None else exported(self._motion(export_step_s))
+            return {**self.made, **again}
         return {
-            **super()._files(),
+            **super().files(),
             "trajectory.json": self.trajectory.to_json().encode(),
             "verdict.json": self.verdict.to_json().encode(),
             **exported(self._motion(export_step_s)),

@@ -9,11 +9,12 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from cellcolor.data.prices import check_share
 from cellcolor.data.wording import listed
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.door.asking import explain, tradeoff
 from cellcolor.door.extras import require_motion
-from cellcolor.door.leaving_out import Wanted, rest_of
+from cellcolor.door.leaving_out import rest_of
 from cellcolor.door.placing import place
 from cellcolor.door.planned import (
     NothingCovered,
@@ -52,7 +53,6 @@ def plan(
     *,
     pattern: str | None = None,
     cover: float | None = None,
-    required: Place | None = None,
     left_alone: Place | None = None,
     ask: Sequence[str] = (),
     time_limit: TimeLimit = None,
@@ -66,7 +66,7 @@ def plan(
     Args:
         scene: its file, its shipped name, or the value.
         pattern: how tool paths are laid out, such as ``contour``; None for the usual one.
-        cover, required, left_alone: what has to be covered, as for ``solve``; the judge does not
+        cover, left_alone: what has to be covered, as for ``solve``; the judge does not
             ask for what is left out.
         ask: what the page is to tell besides, of ``tradeoff``, ``explain``, ``place`` and
             ``setups``; it is asked of the whole scene in the time that is left. ``place`` moves the
@@ -85,7 +85,7 @@ def plan(
     """
     from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
 
-    wanted = Wanted(cover, required, left_alone)
+    check_share("cover", cover)
     for name in ask:
         if name not in _QUESTIONS:
             raise InputError(None, "ask", f"{name!r} is not one of {', '.join(_QUESTIONS)}")
@@ -111,17 +111,12 @@ def plan(
         whole = _built(prepared, given.file, StageClock(deadline, progress))
     run = _Run(whole, pattern or DEFAULT_PATTERN, clock, progress)
     try:
-        best = run.best_of(*run.divided(wanted))
+        best = run.best_of(*run.divided(cover, left_alone))
         verdict = run.judged(best)
     except OutOfTime as error:
         unasked = tuple(f"{name}: not asked, the time limit came first" for name in ask)
         raise PlanOutOfTime(replace(run.so_far, unanswered=unasked)) from error
-    answered: AnsweredScene | None = None
-    unanswered: tuple[str, ...] = ()
-    if ask:
-        with clock.timed("questions"):
-            answered, unanswered = _answered(ask, whole, deadline, progress)
-    return PlannedScene(
+    planned = PlannedScene(
         best.subject,
         best.result,
         best.painting.painted,
@@ -130,9 +125,16 @@ def plan(
         best.planned.trajectory,
         verdict,
         clock.seconds,
-        answered,
-        unanswered=unanswered,
     )
+    if not ask:
+        return planned
+    with clock.timed("files"):
+        files = planned.files()
+    # The page is made after the answers, in less time than all other files have taken.
+    in_time = deadline.earlier(clock.seconds["files"])
+    with clock.timed("questions"):
+        answered, unanswered = _answered(ask, whole, in_time, progress)
+    return replace(planned, answered=answered, unanswered=unanswered, made=files)
 
 
 class _Run:
@@ -156,11 +158,11 @@ class _Run:
         self._notes: tuple[str, ...] = ()
         self._share = 1.0
 
-    def divided(self, wanted: Wanted) -> tuple[Subject, Result]:
+    def divided(self, cover: float | None, place: Place | None) -> tuple[Subject, Result]:
         """What has to be covered, and the fewest segments of it."""
         with self._clock.timed("fewest segments"):
             options = Options(deadline=self._deadline)
-            subject, self._notes, self._share = rest_of(self.so_far.subject, wanted, options)
+            subject, self._notes, self._share = rest_of(self.so_far.subject, cover, place, options)
             self._has(subject=subject)
             result = self._solved(subject)
             self._has(result=result)

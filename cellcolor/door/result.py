@@ -2,34 +2,16 @@
 
 from __future__ import annotations
 
-import html
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import NamedTuple
 
 from cellcolor.data.instance import Instance
-from cellcolor.data.shares import BASES, segment_rows, shares_of
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.value import Drawn
 from cellcolor.door.subject import Subject
-from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
 from cellcolor.files.writing import Output, write
-
-
-class GapStep(NamedTuple):
-    """What was known at one moment of a search.
-
-    Attributes:
-        seconds: since the search began.
-        segments: of the best division by then; None before there was one.
-        lower_bound: no division in the search space has fewer.
-    """
-
-    seconds: float
-    segments: int | None
-    lower_bound: int
 
 
 @dataclass(frozen=True, repr=False)
@@ -41,13 +23,11 @@ class Result(Drawn):
         subject: what was solved, opened.
         covered_share: what was solved, as a share of the area that can be covered and is not left
             alone, 0 to 1.
-        gap: how best division and bound met over time, the last step at the end of the search.
     """
 
     solution: Solution
     subject: Subject = field(hash=False)
     covered_share: float = 1.0
-    gap: tuple[GapStep, ...] = field(default=(), compare=False)
 
     @property
     def instance(self) -> Instance:
@@ -91,27 +71,3 @@ class Result(Drawn):
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self.instance.name!r}: {self}>"
-
-    def _repr_html_(self) -> str:
-        """A table of the segments, and below it the picture or why there is none."""
-        try:
-            picture = self.plot()._repr_html_()
-        except InputError as error:
-            picture = f"<p>{html.escape(str(error))}</p>"
-        return f"<p><b>{html.escape(str(self))}</b></p>{self._table()}{picture}"
-
-    def _table(self) -> str:
-        if not self.solution.cells:
-            return ""
-        shares = shares_of(self.instance, self.solution)
-        rows = [("segment", "color", "cells", BASES[shares.of])]
-        rows += [
-            (str(row.segment), row.color, row.cells, row.percent)
-            for row in segment_rows(self.instance, self.solution, shares)
-        ]
-        lines = []
-        for number, row in enumerate(rows):
-            kind = "td" if number else "th"
-            cells = "".join(f"<{kind}>{html.escape(text)}</{kind}>" for text in row)
-            lines.append(f"<tr>{cells}</tr>")
-        return f"<table>{''.join(lines)}</table>"

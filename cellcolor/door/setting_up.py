@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from cellcolor.data.prices import check_change_over
-from cellcolor.data.value import Value
+from cellcolor.data.prices import check_change_over, check_share
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.asked import SearchAndTell, options_of
 from cellcolor.door.extras import extras_for
@@ -21,7 +19,6 @@ from cellcolor.door.planning import plan
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Subject, scene_or_file
 from cellcolor.errors import InputError
-from cellcolor.files.documents import parse_json, read_text
 from cellcolor.questions.placements import PlacedMinimum, Placements, Pose
 from cellcolor.questions.set_ups import SetUpPlan
 
@@ -123,8 +120,7 @@ def setups(
             and such a place of ``at`` is left out; so are those that ``place`` has refused.
         OutOfTime: the time limit came before there was a choice.
     """
-    if not 0 <= cover <= 1:
-        raise InputError(None, "cover", f"must be from 0 to 1, is {cover:g}")
+    check_share("cover", cover)
     if change_over is not None:
         check_change_over(change_over)
     options, progress = options_of(search), search.get("progress")
@@ -143,43 +139,6 @@ def setups(
     )
     answer = plan_of(found, cover, change_over, options, progress)
     return ChosenSetUps(answer, tuple(found.scenes[one.number - 1] for one in answer.set_ups))
-
-
-@dataclass(frozen=True)
-class _Placed(Value):
-    """What a row of ``place`` says of where the part stands."""
-
-    position_m: tuple[float, float, float]
-    rpy_rad: tuple[float, float, float]
-
-
-def places_in(file: Path) -> list[Pose]:
-    """The placements of a file of JSON Lines that ``place`` has printed, without refused ones.
-
-    Raises:
-        InputError: a line is no placement of a part, or there is none; names file and line.
-    """
-    found: list[Pose] = []
-    for number, line in enumerate(read_text(file).splitlines(), 1):
-        try:
-            row = parse_json(line)
-            if row.get("moved") == "base":
-                raise InputError(None, None, "is a place of the arm's base, not of the part")
-            if not row.get("refused"):
-                members = {name: row.get(name) for name in _Placed.__dataclass_fields__}
-                placed = _Placed.from_document(members)
-                found.append((*placed.position_m, *placed.rpy_rad))
-        except InputError as error:
-            message = error.message
-            if error.field is not None:
-                message = (
-                    "must be an object with position_m and rpy_rad, three numbers each, as place "
-                    "--json prints it"
-                )
-            raise InputError(str(file), f"line {number}", message) from error
-    if not found:
-        raise InputError(str(file), None, "has no place where the part can stand")
-    return found
 
 
 def _poses(at: Sequence[Sequence[float]] | Placements) -> list[Pose]:

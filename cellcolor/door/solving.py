@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from math import degrees
 from os import PathLike
 from typing import TYPE_CHECKING, Unpack
 
-from cellcolor.checker.division import check_solution
 from cellcolor.data.instance import Instance
+from cellcolor.data.prices import check_share
 from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.decomposition import decomposition_of
-from cellcolor.door.asked import SearchOfAPart, Work, begun, options_of, wanted_of
+from cellcolor.door.asked import SearchOfAPart, Work, begun, options_of
 from cellcolor.door.leaving_out import rest_of
-from cellcolor.door.result import GapStep, Result
+from cellcolor.door.result import Result
 from cellcolor.door.subject import (
     Solvable,
     Subject,
@@ -27,7 +26,7 @@ from cellcolor.door.subject import (
 )
 from cellcolor.errors import InputError
 from cellcolor.solvers import checked
-from cellcolor.solvers.interface import STRANDS, Options, Start
+from cellcolor.solvers.interface import STRANDS, Options
 from cellcolor.solvers.registry import DEFAULT
 
 if TYPE_CHECKING:
@@ -76,7 +75,6 @@ def solve(
     solver: str = "cp-sat",
     search_space: SearchSpace = "paper",
     strands: int | None = None,
-    start: Solution | Result | str | PathLike[str] | None = None,
     progress: Callable[[int | None, int], None] | None = None,
     **asked: Unpack[SearchOfAPart],
 ) -> Result:
@@ -93,37 +91,26 @@ def solve(
         search_space: ``paper`` for no more than one corridor of a color across an edge, ``surface``
             for several.
         strands: how many, in the search space ``surface``; None for 2.
-        start: a solution to start from, or its file.
         progress: called with the segments of the best division so far, None before there is one,
             and the lower bound.
-        **asked: time limit, workers and seed (:class:`~cellcolor.door.asked.Search`); and what has
-            to be covered, which is everything if it is left out:
-            :class:`~cellcolor.door.leaving_out.Wanted`.
+        **asked: :class:`~cellcolor.door.asked.SearchOfAPart`.
 
     Raises:
         InputError: what is to be solved, or an option, cannot be used.
         OutOfTime: the time limit came before any division was found.
     """
-    wanted, options = wanted_of(asked), options_of(asked, SearchOfAPart)
+    options = options_of(asked, SearchOfAPart)
+    check_share("cover", asked.get("cover"))
     subject = open_subject(source, options.deadline)
-    subject, left_out, share = rest_of(subject, wanted, options)
+    of = asked.get("cover"), asked.get("left_alone")
+    subject, left_out, share = rest_of(subject, *of, options)
     instance = subject.graph(options.deadline)
     options = replace(
         options,
         search_space=search_space,
         strands=STRANDS.get(search_space, 1) if strands is None else strands,
-        start=None if start is None else start_from(start, instance, strands),
     )
-    gap: list[GapStep] = []
-    begun = time.monotonic()
-
-    def told(segments: int | None, bound: int) -> None:
-        gap.append(GapStep(time.monotonic() - begun, segments, bound))
-        if progress is not None:
-            progress(segments, bound)
-
-    solution = checked.solve(instance, options, solver, told)
-    gap.append(GapStep(time.monotonic() - begun, solution.segments, solution.lower_bound))
+    solution = checked.solve(instance, options, solver, progress)
     if subject.built is not None:
         from cellcolor.motion.posture import with_best_posture
 
@@ -132,36 +119,7 @@ def solve(
     notes += _raw_minimum(subject, options)
     notes += _minimum_modulo(solution, subject, options)
     solution = replace(solution, notes=tuple(notes))
-    return Result(solution, subject, share, tuple(gap))
-
-
-def start_from(
-    source: Solution | Result | str | PathLike[str], instance: Instance, strands: int | None
-) -> Start:
-    """Turn a solution into a solver's starting point.
-
-    Args:
-        source: the solution, or its file.
-        instance: what is about to be solved.
-        strands: those wanted; None for any.
-
-    Raises:
-        InputError: it is not a valid solution of this instance with these strands.
-    """
-    file, solution = None, source
-    if isinstance(solution, Result):
-        solution = solution.solution
-    if not isinstance(solution, Solution):
-        file = str(solution)
-        solution = Solution.read(solution)
-    problems = check_solution(instance, solution).problems
-    if problems:
-        raise InputError(file, None if file else "start", f"is not valid: {problems[0]}")
-    if solution.cells is None:
-        raise InputError(file, "cells", "contains no division to start from")
-    if strands is not None and solution.strands != strands:
-        raise InputError(file, "strands", f"is {solution.strands}, wanted are {strands}")
-    return Start(solution.cells, solution.seams)
+    return Result(solution, subject, share)
 
 
 def _tolerance_in_words(subject: Subject) -> tuple[str, ...]:
@@ -203,7 +161,7 @@ def _minimum_modulo(solution: Solution, subject: Subject, options: Options) -> I
 def _solved_beside(surface: LabelledSurface, options: Options) -> Solution | str:
     """The minimum of another surface, in at most ten seconds; or why there is none."""
     deadline = Deadline(min(options.deadline.moment, Deadline.after(_BESIDE_SECONDS).moment))
-    asked = replace(options, deadline=deadline, start=None)
+    asked = replace(options, deadline=deadline)
     try:
         graph = decomposition_of(surface, deadline=deadline).instance
         return checked.solve(graph, asked, DEFAULT)

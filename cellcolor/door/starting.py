@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 import tomllib
@@ -37,9 +38,11 @@ from cellcolor.files.paths import path_of
 from cellcolor.files.writing import FileKind, Output, check_output, is_folder_or_nothing, write
 
 if TYPE_CHECKING:
+    from cellcolor.arrays import Array, Mask
     from cellcolor.frontend.arm.robot import Robot
     from cellcolor.frontend.parts.inspection import Inspection
     from cellcolor.frontend.prepared import PreparedScene
+    from cellcolor.frontend.reach.validity import Verdicts
     from cellcolor.frontend.setup import Setup
 
 _FLANGES = ("tool0", "flange", "ee_link", "wrist_3_link", "tool_flange")
@@ -48,9 +51,14 @@ _NEEDED = ("pinocchio", "fcl", "igl", "trimesh", "scipy")
 _JOINTS, _ACCELERATION = 6, 5.0  # rad/s^2, which most arms of a meter can
 _JERK = 1000.0  # rad/s^3, an example
 _MOST_ASKED = 300  # vertices of the part, wherever it is tried
+_EDGES_M, _VERTICES = (0.01, 0.1), 2500  # the longest edges: as long as gives so many vertices
 _FARTHER, _HIGHER = (0.45, 0.6, 0.75), (0.02, 0.2, 0.4)
 """Places that are tried: of the part's middle before the robot, and of its lowest point above the
 ground, as shares of the arm's reach."""
+_UP, _BELOW = 0.6, (0.8, 0.6, 0.4)
+"""An arm whose first joint is higher than the first share hangs, or stands on something. Then the
+part's highest point lies so far below that joint."""
+_WORST = 0.1  # of the points count for how well they are reached
 
 _FILE = FileKind("a file begun by cellcolor new", re.compile(re.escape(MARK).encode()))
 _TOOL_FILE = FileKind("a tool begun by cellcolor new", re.compile(rb"<!-- begun by cellcolor new"))
@@ -88,9 +96,9 @@ def new(
     """Write a scene and its setup, with every key explained, ready for ``cellcolor plan``.
 
     The arm has six turning joints; rails and joints beside the chain stand still. The function
-    finds its family, its flange and the links that always overlap. It puts the part where most of
-    it can be reached, of nine places in front of the robot, and proposes a free home position over
-    it. What it assumed is in the notes.
+    finds its family, its flange and the links that always overlap. It puts the part where the arm
+    reaches it best, of nine places in front of the robot (:func:`best_place`), and proposes a free
+    home position over it. What it assumed is in the notes.
 
     Args:
         part: a mesh file (STL, OBJ, PLY).
@@ -130,7 +138,8 @@ def new(
     tell("where the part can stand")
     best, share = best_place(robot, mesh, part_keys, deadline)
     home, posture = home_of(best)
-    robot.keys.update(_found(best, home))
+    edge = float(part_keys["max_edge"])
+    robot.keys.update(_found(best, home), spacing=f"{edge / 10:g}")
     part_keys["position"] = json.dumps(list(best.scene.placement.position_m))
     content = {
         "setup.toml": Template(SETUP).substitute(robot.keys),
@@ -139,7 +148,16 @@ def new(
     }
     place.mkdir(parents=True, exist_ok=True)
     write([Output(place / name, kinds[name], [content[name].encode()]) for name in names])
-    assumed = (f"unit {looked.unit}: {looked.unit_reason}", side, posture)
+    count = len(best.surface.vertices)
+    size = f"its mesh has {count:,} vertices, with edges up to {1e3 * edge:g} mm (max_edge_m)"
+    if count > 2 * _VERTICES:
+        even = f"cellcolor repair {mesh} -o {mesh.stem}.obj --edge-length {edge:g}"
+        size += f"; fewer suffice, since its triangles are long and thin or very small: {even}"
+    assumed = [f"unit {looked.unit}: {looked.unit_reason}", side, size, posture]
+    if looked.repairs:
+        changes = "; ".join(looked.repairs)
+        how = f"cellcolor repair {mesh} -o {mesh.stem}.obj writes that mesh"
+        assumed.insert(1, f"the mesh is repaired where it is read ({changes}): {how}")
     return Started(place / "scene.toml", share, (*assumed, *_notes(best, robot, tool is None)))
 
 
@@ -154,7 +172,7 @@ class FoundArm:
         reach: of the arm, m.
         touching: pairs of its links that overlap in every posture.
         fixed: positions of joints that stand still, rad or m.
-        base_m: x and y of its first joint in the world.
+        base_m: its first joint in the world.
     """
 
     urdf: Path
@@ -163,7 +181,7 @@ class FoundArm:
     reach: float = 0.0
     touching: tuple[tuple[str, str], ...] = ()
     fixed: Mapping[str, float] = field(default_factory=dict)
-    base_m: tuple[float, float] = (0.0, 0.0)
+    base_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def setup(self) -> Setup:
@@ -212,6 +230,7 @@ def arm_of(
         "force": "false" if weightless else "true",
         "why_force": "a URDF lacks masses or efforts" if weightless else "true or false",
         "touching": "[]",
+        "spacing": "0.001",
         "velocities": "",
         "accelerations": json.dumps([_ACCELERATION] * _JOINTS),
         "jerks": json.dumps([_JERK] * _JOINTS),
@@ -231,10 +250,14 @@ def arm_of(
             continue
         touching = json.dumps([list(pair) for pair in pairs])
         robot = prepared.robot
-        x, y, _ = forward(robot, np.zeros((1, robot.joints))).origin[0, 1].tolist()
+        x, y, z = forward(robot, np.zeros((1, robot.joints))).origin[0, 1].tolist()
         keys = found.keys | {"touching": touching}
-        return FoundArm(urdf, tool, keys, reach, pairs, fixed, (x, y))
+        return FoundArm(urdf, tool, keys, reach, pairs, fixed, (x, y, z))
     fault = faults[1] if faults[1].file else faults[1].in_file(str(urdf))
+    own = [name for name in fix if name in {arm.joint_above.get(link) for link in chain}]
+    if own and "6 revolute joints" in fault.message:
+        why = f"{fault.message}: --fix {own[0]} makes a joint of the arm itself stand still"
+        raise InputError(fault.file, fault.field, why)
     if "fixed_joints" in fault.message + (fault.field or ""):
         raise InputError(fault.file, fault.field, f"{fault.message} (here: --fix JOINT=POSITION)")
     raise fault
@@ -261,12 +284,17 @@ def part_keys_of(
     if looked.refusal_after_repair is not None:
         raise InputError(str(mesh), None, looked.refusal_after_repair)
     unit = UNITS[looked.unit]
-    side = side_of(load_mesh(mesh, unit, mend=bool(looked.repairs)), outside, cover)
+    surface = load_mesh(mesh, unit, mend=bool(looked.repairs))
+    side = side_of(surface, outside, cover)
+    # Halved edges are 0.7 of the longest in the mean, and there are two triangles a vertex.
+    edge = math.ceil(1e3 * math.sqrt(surface.mesh.areas.sum() / (0.42 * _VERTICES))) / 1e3
+    least, most = _EDGES_M
     keys = {
         "name": json.dumps(mesh.stem),
         "part": json.dumps(_relative(mesh, folder)),
         "meters_per_unit": str(unit),
         "repair": "true" if looked.repairs else "false",
+        "max_edge": str(min(max(least, edge), most)),
     }
     return keys | side.keys, side.note
 
@@ -274,12 +302,15 @@ def part_keys_of(
 def best_place(
     arm: FoundArm, mesh: Path, part_keys: dict[str, str], deadline: Deadline
 ) -> tuple[PreparedScene, float]:
-    """The scene where most of the part can be reached, and the share of it.
+    """The scene with the part where the arm reaches it best, and the share of it that is reached.
+
+    Of nine places before the robot that is the one where most of the part can be reached, then most
+    of it in one posture, then where this posture is farthest from limits and singularities at the
+    worst tenth of the points.
 
     Raises:
         InputError: nothing of it can be reached anywhere.
     """
-    from cellcolor.data.candidate_table import VALID
     from cellcolor.frontend.parts.placement import Placement
     from cellcolor.frontend.prepared import prepare
     from cellcolor.frontend.scene import Scene
@@ -291,13 +322,16 @@ def best_place(
         vertices = scene.object.surface(scene.folder, deadline).vertices
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     middle = (low + high) / 2
-    best: tuple[PreparedScene, float] | None = None
+    tried: list[_Reached] = []
     prepared: PreparedScene | None = None
     fault: InputError | None = None
     failed: Counter[str] = Counter()
-    for far, raised in product(_FARTHER, _HIGHER):
-        ahead, beside = arm.base_m[0] + far * arm.reach, arm.base_m[1]
-        position = ahead - middle[0], beside - middle[1], raised * arm.reach - low[2]
+    x, y, z = arm.base_m
+    heights = [share * arm.reach - low[2] for share in _HIGHER]
+    if z > _UP * arm.reach:
+        heights = [max(z - share * arm.reach - high[2], -low[2]) for share in _BELOW]
+    for far, height in product(_FARTHER, heights):
+        position = x + far * arm.reach - middle[0], y - middle[1], height
         try:
             place = Placement(position_m=(np.round(position, 3) + 0.0).tolist())
             if prepared is None:
@@ -311,22 +345,65 @@ def best_place(
         step = -(-len(surface.vertices) // _MOST_ASKED)
         solved = prepared.arm.inverse(surface.vertices[::step], -surface.normals[::step], deadline)
         verdicts = prepared.judge(solved.reshape(-1, prepared.robot.joints), deadline)
-        valid = (verdicts.reasons == VALID).reshape(solved.shape[:2]).any(axis=1)
         failed.update(prepared.judge.reason_names[code] for code in verdicts.reasons.tolist())
-        share = float(valid.mean())
-        if best is None or share > best[1]:
-            best = prepared, share
-    if best is None:
+        tried.append(_Reached.of(prepared, verdicts, solved.shape[:2]))
+    if not tried:
         assert fault is not None
         raise fault
-    if best[1] == 0:
+    greatest = max(float(one.determinants.max(initial=0.0)) for one in tried)
+    best = max(tried, key=lambda one: one.merit(greatest))  # the first of several
+    if not best.valid.any():
         message = (
             "nothing of the part can be reached at any of nine places before the robot; most often "
             f"a posture fails by {failed.most_common(1)[0][0]!r}: does the part's outside face the "
             "robot (--outside flip), and is its size one for this arm?"
         )
-        raise InputError(str(mesh), None, "; ".join([message, *best[0].robot.warnings]))
-    return best
+        raise InputError(str(mesh), None, "; ".join([message, *best.prepared.robot.warnings]))
+    return best.prepared, float(best.valid.any(axis=1).mean())
+
+
+@dataclass(frozen=True, eq=False)
+class _Reached:
+    """How well the arm reaches a sample of the part's vertices in one place, in each posture.
+
+    Attributes:
+        prepared: the scene with the part there.
+        valid: (n, branches) whether the arm may be on that vertex.
+        determinants: (n, branches) of the task, m³; 0 where it may not.
+        room: (n, branches) to the joint limits, 0 to 1.
+    """
+
+    prepared: PreparedScene
+    valid: Mask
+    determinants: Array
+    room: Array
+
+    @classmethod
+    def of(cls, prepared: PreparedScene, verdicts: Verdicts, shape: tuple[int, int]) -> _Reached:
+        """From the verdicts on the candidates of all vertices."""
+        from cellcolor.data.candidate_table import VALID
+        from cellcolor.motion.posture import joint_room
+
+        valid = verdicts.reasons == VALID
+        room = joint_room(prepared.robot, np.where(valid[:, None], verdicts.configurations, 0.0))
+        determinants = np.where(valid, verdicts.determinants, 0.0)
+        own = (valid.reshape(shape), determinants.reshape(shape), room.reshape(shape))
+        return cls(prepared, *own)
+
+    def merit(self, greatest: float) -> tuple[float, float, float]:
+        """What a better place has more of: reach, reach in one posture, and distance to limits.
+
+        Args:
+            greatest: determinant of all places, m³.
+        """
+        valid = self.valid
+        good = np.where(valid, np.minimum(self.determinants / (greatest or 1.0), self.room), 0.0)
+        if not self.prepared.arm.named:  # columns are no postures
+            valid, good = np.array([valid.any(axis=1)]).T, np.array([good.max(axis=1)]).T
+        shares, worst = valid.mean(axis=0).round(2), np.quantile(good, _WORST, axis=0)
+        branch = max(range(len(shares)), key=lambda own: (shares[own], worst[own]))
+        share = float(valid.any(axis=1).mean().round(2))
+        return share, float(shares[branch]), float(worst[branch])
 
 
 def _found(prepared: PreparedScene, home: list[float] | None) -> dict[str, str]:

@@ -27,6 +27,7 @@ CoverChoice = Literal["largest", "all"]
 _TOWARD = np.array([-1.0, 0.0, 1.0]) / np.sqrt(2)  # the part lies before the robot: up and back
 _ALONG = 1e-3  # rad; an axis so near to another one is along it
 _AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
+_OFF, _MOST_OFF = 1e-6, 1e-3  # m; a flange so far beside the last axis was measured, not meant
 _ANY_WAY = 0.2  # the mean of the unit normals of what faces every way is shorter
 _LARGER = 1.02  # times the inner side's area has a shell's outer one, if it is bent
 _ABOVE = (0.1, 0.15, 0.05, 0.2)  # m; so far over the part the arm waits, the first that is free
@@ -55,41 +56,53 @@ def is_weightless(tool: Urdf) -> bool:
 
 
 def mount_line(arm: Urdf, flange: str) -> str:
-    """The setup's line that turns the tool's z axis onto the last joint's, if it is not there.
+    """The setup's lines that put the tool's z axis onto the last joint's, if it is not there.
 
-    Some vendors' flanges have their x axis along that of the joint.
+    Some vendors' flanges have their x axis along that of the joint, or lie a little beside it.
     """
     from cellcolor.frontend.parts.placement import rpy_from_rotation
 
-    x, y, z = _last_axis(arm, flange)
+    (x, y, z), beside = _last_axis(arm, flange)
+    lines = ""
+    off = float(np.linalg.norm(beside))
+    if _OFF < off < _MOST_OFF:
+        back = [round(-along, 9) + 0.0 for along in beside.tolist()]
+        lines = (
+            f"mount_position_m = {back}   # the flange is {1e3 * off:.3g} mm off the last axis\n"
+        )
     along = np.hypot(x, y) < _ALONG
     if along and z > 0:
-        return ""
+        return lines
     # Turned about the axis across both.
     cross = np.array([[0, 0, x], [0, 0, y], [-x, -y, 0]])
     onto = np.diag([1, -1, -1]) if along else np.eye(3) + cross + cross @ cross / (1 + z)
     angles = [round(angle, 9) + 0.0 for angle in rpy_from_rotation(onto)]
-    return f"mount_rpy_rad = {angles}   # turns the tool's z axis onto the last joint's\n"
+    return f"{lines}mount_rpy_rad = {angles}   # turns the tool's z axis onto the last joint's\n"
 
 
-def _last_axis(arm: Urdf, flange: str) -> Array:
-    """The last axis (3,) before the flange, in its frame; outward with all joints at zero."""
+def _last_axis(arm: Urdf, flange: str) -> tuple[Array, Array]:
+    """The last axis (3,) before the flange, in its frame, and how far beside it the flange is, m.
+
+    The axis points outward with all joints at zero.
+    """
     from cellcolor.frontend.parts.placement import rotation_from_rpy
 
     joints = {joint.get("name"): joint for joint in arm.xml.findall("joint")}
     turn, out, link = np.eye(3), np.zeros(3), flange  # of the flange, seen from a link before it
     axis: Array | None = None
+    beside = np.zeros(3)
     while link in arm.parent:
         joint = joints[arm.joint_above[link]]
         if axis is None and arm.joint_above[link] in arm.kinds:
             axis = _numbers(joint.find("axis"), "xyz", "1 0 0") @ turn
             axis /= np.linalg.norm(axis)
+            beside = out @ turn - (out @ turn @ axis) * axis
         if axis is not None and abs(ahead := axis @ (out @ turn)) > _AHEAD:
-            return np.asarray(axis * np.sign(ahead))
+            return np.asarray(axis * np.sign(ahead)), beside
         xyz, rpy = (_numbers(joint.find("origin"), key, "0 0 0") for key in ("xyz", "rpy"))
         rotation = rotation_from_rpy(*rpy)
         turn, out, link = rotation @ turn, xyz + rotation @ out, arm.parent[link]
-    return np.array([0.0, 0.0, 1.0]) if axis is None else axis
+    return np.array([0.0, 0.0, 1.0]) if axis is None else axis, beside
 
 
 def _numbers(element: ET.Element | None, key: str, usual: str) -> Array:

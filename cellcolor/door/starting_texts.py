@@ -56,7 +56,7 @@ base_step_rad = 0.1
 step_per_length_rad_per_m = 30.0
 near_singular_determinant = 0.0045
 probe_spacing_m = 0.0005
-validity_spacing_m = 0.001
+validity_spacing_m = $spacing
 
 # Very small cells, as shares of the surface: simplified, or given up and said so.
 [slivers]
@@ -102,10 +102,10 @@ setup = "setup.toml"
 kind = "mesh"
 file = $part
 meters_per_unit = $meters_per_unit              # 0.001 for a file in millimeters
-max_edge_m = 0.01                   # longer edges are halved: the tool's contact region
+max_edge_m = $max_edge                   # longer edges are halved; finer meshes take longer
 repair = $repair
 $flip$cover
-# Put where most of the part was found to be reachable, of nine places before the robot.
+# Put where the arm reaches the part best, of nine places before the robot.
 [placement]
 position_m = $position              # of the file's origin, from the robot's root link
 rpy_rad = [0.0, 0.0, 0.0]           # extrinsic x, y, z

@@ -1,1 +1,1 @@
-"""What other programs read: joints as CSV, tool paths as YAML, painted meshes."""
+"""What other programs read: joints as CSV, ROS 2 trajectories, programs for controllers."""

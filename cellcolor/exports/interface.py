@@ -7,12 +7,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from cellcolor.arrays import Array, Index
-from cellcolor.data.surface import LabelledSurface
-from cellcolor.data.tool_paths import ToolPaths
+from cellcolor.arrays import Array
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.files.writing import FileKind
 from cellcolor.frontend.setup import Controller
@@ -77,39 +74,27 @@ class ArmAxes:
             bool(robot.slides.any()),
         )
 
-    def moved(self, joints: Array) -> list[tuple[Rotation, Array]]:
-        """How what is behind each joint has turned (k,) and moved (k, 3), m, since all were zero.
+    def tips(self, joints: Array) -> Array:
+        """(k, 4, 4) poses of the tool's tip with the joints (k, joints), rad, of an arm that turns.
 
-        Args:
-            joints: (k, joints) rad; of an arm that turns.
+        Axis by axis: how all behind it has turned and moved since the joints were at zero.
         """
         turn, shift = Rotation.identity(len(joints)), np.zeros((len(joints), 3))
-        found = []
         for point, direction, angles in zip(self.points, self.directions, joints.T, strict=True):
             own = turn * Rotation.from_rotvec(angles[:, None] * direction)
             shift = turn.apply(point) + shift - own.apply(point)
             turn = own
-            found.append((turn, shift))
-        return found
-
-    def tips(self, joints: Array) -> Array:
-        """(k, 4, 4) poses of the tool's tip with the joints (k, joints) of an arm that turns."""
-        turn, shift = self.moved(joints)[-1]
         found = np.tile(self.tip, (len(joints), 1, 1))
         found[:, :3] = turn.as_matrix() @ self.tip[:3]
         found[:, :3, 3] += shift
         return found
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PlannedMotion:
-    """A painted surface and the motion that covers it.
+    """A motion, and the arm that makes it.
 
     Attributes:
-        surface: the painted labelled surface.
-        segment_of: (n,) the segment of each vertex, -1 where it has no color.
-        fills: the color of each segment in pictures, like ``#77AADD``.
-        paths: the tool paths.
         trajectory: joint angles over time.
         axes: of the arm; None if unknown, and then no program for a controller can be written.
         step_s: fixed time step of the exported samples, s; None keeps those of the trajectory.
@@ -119,10 +104,6 @@ class PlannedMotion:
         part: (4, 4) pose of the part in the world, the work object of programs.
     """
 
-    surface: LabelledSurface
-    segment_of: Index
-    fills: tuple[str, ...]
-    paths: ToolPaths
     trajectory: Trajectory
     axes: ArmAxes | None = None
     step_s: float | None = None
@@ -130,12 +111,6 @@ class PlannedMotion:
     controller: Controller | None = None
     led: bool = False
     part: Array = field(default_factory=lambda: np.eye(4))
-
-    @property
-    def colors(self) -> NDArray[np.uint8]:
-        """(n, 4) red, green, blue and opacity of each vertex; light grey without a color."""
-        fills = [bytes.fromhex(fill[1:] + "FF") for fill in (*self.fills, "#DDDDDD")]
-        return np.array([list(fill) for fill in fills], dtype=np.uint8)[self.segment_of]
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,12 +11,12 @@ from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from cellcolor.arrays import Array, Index
 from cellcolor.exports.interface import ArmAxes, Export, NotForThisArm, PlannedMotion
 from cellcolor.exports.languages import LANGUAGES, Job, Language, Move
 from cellcolor.exports.samples import Samples, slopes, stretches, via_points
-from cellcolor.exports.tool_poses import quaternions
 from cellcolor.frontend.setup import Controller
 
 UR_STEP = 0.008  # s; the rate at which a UR controller is fed unless another is asked for
@@ -145,9 +145,12 @@ def _remarks(
     if planned.step_s is not None:
         remarks.append(f"A point every {planned.step_s:g} s.")
     else:
-        remarks.append(f"Joint moves: at most {WITHIN:g} rad from the samples between points.")
+        remarks.append(f"Between two joint moves no joint is more than {WITHIN:g} rad off the way.")
     if beside:
-        remarks.append(f"These samples are at most {beside:.2g} rad beside the judged motion.")
+        remarks.append(
+            "The time step is fixed, which rounds off the corners of the judged motion: joints are "
+            f"up to {beside:.2g} rad off it there."
+        )
     if linear:
         remarks.append(
             f"Linear moves: x, y and z at most {1e3 * BESIDE:g} mm from the judged samples, the "
@@ -165,7 +168,7 @@ def _moves(
 ) -> Iterator[Move]:
     """The places that a stretch leads to, the first one where it begins."""
     poses = np.linalg.inv(planned.part) @ axes.tips(own.joints)
-    turns, tips = quaternions(poses[:, :3, 0], poses[:, :3, 2]), poses[:, :3, 3]
+    turns, tips = _quaternions(poses[:, :3, :3]), poses[:, :3, 3]
     presses = _presses(own, -poses[:, :3, 2]) if planned.force_n else np.zeros(0, dtype=np.int64)
     edges = np.flatnonzero(np.diff(own.contact))
     kept = np.concatenate([edges, edges + 1, presses])
@@ -205,6 +208,13 @@ def _moves(
             share=_share(axes, own, before, row),
         )
         before = row
+
+
+def _quaternions(turns: Array) -> Array:
+    """Quaternions (k, 4) x, y, z, w of rotations (k, 3, 3), neighbors never of opposite signs."""
+    found = Rotation.from_matrix(turns).as_quat(canonical=True)
+    opposite = np.sum(found[1:] * found[:-1], axis=1) < 0
+    return np.asarray(found * np.cumprod(np.where([False, *opposite], -1.0, 1.0))[:, None])
 
 
 def _share(axes: ArmAxes, own: Samples, before: int, row: int) -> float:

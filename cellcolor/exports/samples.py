@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.trajectory import Trajectory
@@ -17,24 +18,17 @@ class Samples:
     """One planned stretch, from rest to rest.
 
     Attributes:
-        first: its first sample in the trajectory.
         times: (k,) s, from 0 on.
         joints, velocities, accelerations: (k, joints) in rad, rad/s and rad/s², or m.
-        points, normals: (k, 3) the tip in the world, m, and the outward normal.
         contact: (k,) whether the tool is on the surface.
-        segment: (k,) the segment, -1 between them.
         beside: how far a joint is from the judged motion at most, rad or m.
     """
 
-    first: int
     times: Array
     joints: Array
     velocities: Array
     accelerations: Array
-    points: Array
-    normals: Array
     contact: Mask
-    segment: Index
     beside: float = 0.0
 
 
@@ -43,8 +37,8 @@ def stretches(trajectory: Trajectory, step_s: float | None = None) -> list[Sampl
 
     The velocity at a sample is that of the parabola through it and its two neighbors;
     accelerations come from velocities in the same way. Both are zero at the ends. With a time step,
-    joints follow the cubic Hermite curve through the samples and their velocities, and all else is
-    interpolated linearly. The last moment is the first that is not before the last sample.
+    joints follow the cubic Hermite curve through the samples and their velocities. The last moment
+    is the first that is not before the last sample.
 
     Raises:
         InputError: two samples have the same nanosecond, or the later one comes first.
@@ -62,41 +56,17 @@ def _stretch(trajectory: Trajectory, first: int, last: int, step_s: float | None
         raise InputError(None, field, "is not later than the one before")
     joints, contact = trajectory.joints[own], trajectory.contact[own]
     velocities = slopes(times, joints)
-    if step_s is None:
-        return Samples(
-            first, times, joints, velocities, slopes(times, velocities), trajectory.points[own],
-            trajectory.normals[own], contact, trajectory.segment[own],
-        )  # fmt: skip
+    if step_s is None or len(times) < 2:
+        return Samples(times, joints, velocities, slopes(times, velocities), contact)
     count = int(np.ceil(times[-1] / step_s - 1e-9))
     moments = np.asarray(np.arange(count + 1) * step_s, dtype=np.float64)
     asked = np.minimum(moments, times[-1])
-    before = np.clip(np.searchsorted(times, asked, side="right") - 1, 0, max(len(times) - 2, 0))
-    after = np.minimum(before + 1, len(times) - 1)
-    width = np.where(after > before, times[after] - times[before], 1.0)
-    share = ((asked - times[before]) / width)[:, None]
-    straight = joints[before] + share * (joints[after] - joints[before])
-    slope = (joints[after] - joints[before]) / width[:, None]
-    starts, ends = velocities[before] - slope, velocities[after] - slope
-    away = share * (1 - share) * ((1 - share) * starts - share * ends) * width[:, None]
-    moved = straight + away
-    speeds = slope + (1 - share) * (1 - 3 * share) * starts + share * (3 * share - 2) * ends
-    nearest = np.where(share[:, 0] < 1, before, after)
-    normals = trajectory.normals[own]
-    turned = normals[before] + share * (normals[after] - normals[before])
-    lengths = np.linalg.norm(turned, axis=1, keepdims=True)
-    points = trajectory.points[own]
-    return Samples(
-        first,
-        moments,
-        moved,
-        speeds,
-        slopes(moments, speeds),
-        points[before] + share * (points[after] - points[before]),
-        np.where(lengths > 1e-9, turned / np.maximum(lengths, 1e-9), normals[before]),
-        contact[before] & contact[after] | (contact[nearest] & (share[:, 0] % 1 == 0)),
-        trajectory.segment[own][nearest],
-        float(np.abs(away).max(initial=0.0)),
-    )
+    cubic = CubicHermiteSpline(times, joints, velocities)
+    moved, speeds = cubic(asked), cubic(asked, 1)
+    straight = np.column_stack([np.interp(asked, times, joint) for joint in joints.T])
+    touching = np.interp(asked, times, contact) == 1  # both samples around
+    beside = float(np.abs(moved - straight).max(initial=0.0))
+    return Samples(moments, moved, speeds, slopes(moments, speeds), touching, beside)
 
 
 def slopes(times: Array, values: Array) -> Array:

@@ -1,45 +1,55 @@
-"""Pieces of work, and what came of them, whoever does them; the workers of this machine.
-
-Each piece of work is done in a process of its own. ``cluster`` has the workers of a Dask cluster.
-"""
+"""Pieces of work, so many at a time on this machine, each in a process of its own."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from itertools import islice
 from threading import Event
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
-from cellcolor.errors import CellcolorError
-from cellcolor.processes import Ended, Limits, run_alone
+from cellcolor.processes import MOST_MB, Ended, run_alone
 
 _Name = TypeVar("_Name")
 
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """One piece of work: a function of a module that workers can import, what can be pickled."""
+    """One piece of work; see :func:`~cellcolor.processes.run_alone`."""
 
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
-    limits: Limits
+    most_seconds: float
+    most_mb: float = MOST_MB
 
 
-class Workers(AbstractContextManager["Workers"], Protocol):
-    """Processes that work is handed to.
+class Workers(AbstractContextManager["Workers"]):
+    """Threads that watch a process each, used in a ``with`` block.
 
-    They are used in a ``with`` block: whatever ends it early, such as Ctrl-C, ends the work.
+    Whatever ends the block early, such as Ctrl-C, ends the work.
+
+    Attributes:
+        slots: how many pieces of work they do at a time.
     """
 
-    @property
-    def slots(self) -> int:
-        """How many pieces of work they do at a time."""
+    def __init__(self, slots: int) -> None:
+        self.slots = slots
+        self._watchers = ThreadPoolExecutor(slots)
+        self._stop = Event()
 
-    def submit(self, task: Task, /) -> Future[Ended]:
+    def submit(self, task: Task) -> Future[Ended]:
         """Hand in a piece of work; what comes of it is in the future sooner or later."""
+        limits = task.most_seconds, task.most_mb
+        return self._watchers.submit(
+            run_alone, task.function, task.arguments, *limits, self._stop.is_set
+        )
+
+    def __exit__(self, *_: object) -> None:
+        """End what is still being done, at once."""
+        self._stop.set()
+        self._watchers.shutdown(cancel_futures=True)
 
 
 def as_they_end(
@@ -58,36 +68,4 @@ def as_they_end(
         if not names:
             return
         for future in wait(names, return_when=FIRST_COMPLETED).done:
-            yield names.pop(future), _ended(future)
-
-
-def _ended(future: Future[Ended]) -> Ended:
-    """The result of a future; what went wrong outside of the work's own process is a result too."""
-    try:
-        return future.result()
-    except CancelledError as error:
-        raise CellcolorError("the cluster has dropped the work; is its scheduler gone?") from error
-    except Exception as error:  # a cluster gives up work whose workers die again and again
-        return Ended("crashed", error=" ".join(f"{type(error).__name__}: {error}".split())[:300])
-
-
-class LocalWorkers(Workers):
-    """So many pieces of work at a time on this machine, each watched by a thread."""
-
-    def __init__(self, jobs: int) -> None:
-        self._jobs = jobs
-        self._watchers = ThreadPoolExecutor(jobs)
-        self._stop = Event()
-
-    @property
-    def slots(self) -> int:
-        return self._jobs
-
-    def submit(self, task: Task, /) -> Future[Ended]:
-        work = (task.function, task.arguments, task.limits, self._stop.is_set)
-        return self._watchers.submit(run_alone, *work)
-
-    def __exit__(self, *_: object) -> None:
-        """End what is still being done, at once."""
-        self._stop.set()
-        self._watchers.shutdown(cancel_futures=True)
+            yield names.pop(future), future.result()

@@ -111,15 +111,25 @@ def color_costs(robot: Robot, candidates: Candidates) -> Array:
     """How badly conditioned the arm is in each candidate (n, branches), from 0, best, to 1.
 
     Two things count, and the worse of them: the task determinant as a share of the greatest one on
-    this surface, and how far the joint that is nearest to its limits is from them, as a share of a
-    quarter turn, or of a quarter of the way between them if it is prismatic. Joints may be turned
-    by full circles. Candidates that are not valid cost 1.
+    this surface, and :func:`joint_room`. Candidates that are not valid cost 1.
     """
     valid = candidates.valid
     determinants = np.where(valid, candidates.determinants, 0.0)
     greatest = float(determinants.max(initial=0.0))
     good = determinants / greatest if greatest else determinants
     joints = np.where(valid[:, :, None], candidates.configurations, 0.0)
+    return np.asarray(np.where(valid, 1.0 - np.minimum(good, joint_room(robot, joints)), 1.0))
+
+
+def joint_room(robot: Robot, joints: Array) -> Array:
+    """How far the joint that is nearest to its limits is from them, (…,) from 0 to 1.
+
+    It is a share of a quarter turn, or of a quarter of the way between the limits of a prismatic
+    joint. Joints may be turned by full circles.
+
+    Args:
+        joints: (…, joints) configurations, rad, or m of prismatic joints.
+    """
     circle = 2 * np.pi
     # As far from both limits as full circles allow: the middle is the best place. A joint without
     # limits has room everywhere.
@@ -129,5 +139,4 @@ def color_costs(robot: Robot, candidates: Candidates) -> Array:
     off = np.abs(joints - middle)
     nearest = np.where(robot.slides, off, np.minimum(off % circle, circle - off % circle))
     roomy = np.where(robot.slides, half / 2, _ROOMY)
-    room = np.clip((half - nearest) / roomy, 0.0, 1.0).min(axis=2)
-    return np.asarray(np.where(valid, 1.0 - np.minimum(good, room), 1.0))
+    return np.asarray(np.clip((half - nearest) / roomy, 0.0, 1.0).min(axis=-1))

@@ -21,11 +21,38 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition
 from cellcolor.decomposition.borders import Borders
 from cellcolor.errors import InputError, RefusedResult
-from cellcolor.painting.border_report import BorderReport
 from cellcolor.painting.gates import choose_gates, steps_by_edge, subcells_on_surface
 from cellcolor.painting.refined import Refined, interpolated, unrefined
 from cellcolor.painting.trees import TooNarrow, Trees
 from cellcolor.union_find import UnionFind
+
+
+@dataclass(frozen=True)
+class BorderMeasures:
+    """Where the borders of a painting are, in numbers.
+
+    Attributes:
+        length_m: of all borders between segments, m.
+        cost: mean of the caller's cost over the area that has a color; 0 if there is no such cost.
+    """
+
+    length_m: float
+    cost: float
+
+
+@dataclass(frozen=True)
+class BorderReport:
+    """What moving the borders has changed.
+
+    Attributes:
+        before: as the solution was painted.
+        after: as they are now.
+        moved: how many vertices have changed their segment.
+    """
+
+    before: BorderMeasures
+    after: BorderMeasures
+    moved: int
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -3,8 +3,18 @@
 A new vertex lies in the middle of a mesh edge and copies one end of it: it has that end's colors,
 and stands for that end in all that follows. A mesh edge between vertices that stand for the same
 old vertex has no crack; any other has the crack of the old mesh edge that it stands for.
-Contracting every group of vertices that stand for one old vertex gives the old mesh again, so the
-topological graph of the refined surface is that of the old one (docs/motion.md).
+Contracting every **group** of vertices that stand for one old vertex gives the old mesh again with
+the same cracks, so the topological graph of the refined surface is that of the old one. Consider
+one step:
+
+1. Each group is connected and has no hole. It is the old vertex v and middles of mesh edges at v,
+   each a neighbor of v; two of them that are neighbors lie in one old triangle at v. So it is a fan
+   around v.
+2. Each old triangle keeps its corner. Let every vertex of an old triangle bear the name of the end
+   that it stands for. Along each side the names change once, so by Sperner's lemma the number of
+   new triangles with three names is odd. Two new triangles at the two ends of one side cannot both
+   have three, so there is exactly one. The mesh edges between two groups are crossed by one path,
+   from the change on the side to that triangle; a second one would be closed, and part a group.
 """
 
 from __future__ import annotations
@@ -21,8 +31,9 @@ from cellcolor.mesh.dividing import halved
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 MOST_VERTICES = 250_000
-"""No surface is refined beyond that, so that painting it stays within the memory that is promised
-(docs/motion.md has what was measured)."""
+"""No surface is refined beyond that, so that painting it stays within the memory that is promised.
+One that grew from 11,664 to 190,761 vertices took 22 s and 970 MB, and moving its borders 40 s and
+1.4 GB in all."""
 
 
 @dataclass(frozen=True)

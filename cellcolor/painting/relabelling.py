@@ -20,21 +20,19 @@ class Relabelling:
     Attributes:
         segment: of each vertex, -1 where it has no color.
         color_of: the color of each segment.
-        held: vertices that stay where they are.
     """
 
     def __init__(
-        self, nearby: Nearby, segment_of: Index, color_of: Mapping[int, int], toll: Array | None
+        self, nearby: Nearby, segment_of: Index, color_of: Mapping[int, int], toll: Array
     ) -> None:
-        """``toll`` (n, colors): what a vertex of a color costs, in m of border; None: nothing."""
+        """``toll`` (n, colors): what a vertex of a color costs, in m of border."""
         self._nearby = nearby
         self._surface = nearby.surface
         self._colors = [frozenset(colors) for colors in self._surface.vertex_colors]
-        self._toll = None if toll is None else toll.tolist()
+        self._toll = toll.tolist()
         self._least = _LEAST * nearby.mean_edge
         self.segment: list[int] = segment_of.tolist()
         self.color_of = color_of
-        self.held: set[int] = set()
 
     def shorten(self, deadline: Deadline) -> None:
         """Move borders as long as tolls and lengths, added up, get smaller.
@@ -66,32 +64,24 @@ class Relabelling:
         """Give a vertex to the neighboring segment that gains most by it, if any gains."""
         segment = self.segment
         own = segment[vertex]
-        if own < 0 or vertex in self.held:
+        if own < 0:
             return False
         beside = {segment[w] for w in self._nearby.around[vertex]} - {own, -1}
         weight = dict.fromkeys([own, *beside], 0.0)
         for other, _, share in self._nearby.near(vertex):
             if segment[other] in weight:
                 weight[segment[other]] += share
-        change = {
-            new: weight[own] - weight[new] + self._change_of_toll(vertex, own, new)
-            for new in beside
-        }
+        # A color that does not reach the vertex is refused below.
+        toll = {number: self._toll[vertex][self.color_of[number]] for number in weight}
+        change = {new: weight[own] - weight[new] + toll[new] - toll[own] for new in beside}
         for new in sorted(beside, key=lambda number: (change[number], number)):
             if change[new] >= -self._least:
                 return False
-            if self.give(vertex, new):
+            if self._give(vertex, new):
                 return True
         return False
 
-    def _change_of_toll(self, vertex: int, own: int, new: int) -> float:
-        color = self.color_of[new]
-        if self._toll is None or color not in self._colors[vertex]:
-            return 0.0
-        toll = self._toll[vertex]
-        return float(toll[color] - toll[self.color_of[own]])
-
-    def give(self, vertex: int, new: int) -> bool:
+    def _give(self, vertex: int, new: int) -> bool:
         """Give a vertex to another segment if that is legal; says whether it was."""
         legal = self.color_of[new] in self._colors[vertex] and self._keeps_segments(vertex, new)
         if legal:

@@ -7,12 +7,14 @@ form a **piece**; a sub-cell is unfinished while it has several pieces. Vertices
 **walk** goes round a connected part of the wall once, with the free vertices on its left.
 
 Each step connects two pieces of one sub-cell in one of two ways. After either, the rest of the
-division can still be drawn (docs/motion.md has the proof):
+division can still be drawn:
 
-- along the wall, if the two pieces are on one walk and no unfinished sub-cell is met between them;
-- across, by a shortest way, if they are on different walks.
+- along the wall, if the two pieces are on one walk and no unfinished sub-cell is met between them,
+  so that nothing unfinished is shut in;
+- across, by a shortest way, if they are on different walks: such a cut never parts a planar region.
 
-If the mesh is too narrow for that, the caller has to refine it.
+One of the two is always possible, because sub-cells do not cross: on each walk one unfinished
+sub-cell is innermost. If the mesh is too narrow for that, the caller has to refine it.
 """
 
 from __future__ import annotations

@@ -305,7 +305,7 @@ class _Asked:
                 cells[inside], self.areas[inside], minlength=len(found.instance.cells)
             )
             share = min(1.0, self.cover * self.whole / float(weights.sum()))
-            point, least = few_that_cover(found.instance, share, options, weights.tolist())
+            point, least = few_that_cover(found.instance, share, options)
             surface = surface.without_vertices(np.isin(cells, point.left_out))
             instance = decomposition_of(surface, deadline=deadline).instance
             solution = checked.solve(instance, options)

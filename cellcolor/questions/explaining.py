@@ -15,7 +15,6 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from cellcolor.arrays import Array
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import OutOfTime
 from cellcolor.decomposition import decomposition_of
@@ -26,7 +25,7 @@ from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.relaxing import Relaxation, ToolLength, relaxations_of, without
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.stages import Stages, judged
-from cellcolor.questions.explanation import BranchHere, Explanation, RelaxedMinimum
+from cellcolor.questions.explanation import Explanation, RelaxedMinimum
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 
@@ -38,29 +37,22 @@ Progress = Callable[[str], None]
 def explained(
     prepared: PreparedScene,
     options: Options,
-    at: Array | None = None,
     progress: Progress | None = None,
 ) -> Explanation:
     """What each thing that a scene asks for costs.
 
     Args:
         options: deadline, workers and seed of each solve.
-        at: (3,) a point in the world, m; what each branch does at the vertex nearest to it is told
-            as well.
         progress: told what is being tried.
 
     Raises:
-        InputError: the scene cannot be built, or the point is farther from the part's surface than
-            that is large.
+        InputError: the scene cannot be built.
         OutOfTime: the deadline came before the scene itself was solved.
     """
-    if at is not None:
-        _check_near(prepared.surface.vertices, at)
     report = progress or (lambda _: None)
     report("the scene as it is")
     asked = _Asked(prepared, options)
     base = asked.base
-    here = () if at is None else _reasons_at(prepared, asked.stages, at)
     alone: dict[Relaxation, RelaxedMinimum] = {}
     amounts: list[RelaxedMinimum] = []
     sets: list[RelaxedMinimum] = []
@@ -85,17 +77,8 @@ def explained(
         complete = False
     rows = sorted(alone.values(), key=_rank)
     return Explanation(
-        prepared.scene.name, base, tuple(rows), tuple(amounts), tuple(sets), here, complete
+        prepared.scene.name, base, tuple(rows), tuple(amounts), tuple(sets), complete
     )
-
-
-def _check_near(vertices: Array, at: Array) -> None:
-    away = np.linalg.norm(vertices - at, axis=1)
-    nearest = int(np.argmin(away))
-    if away[nearest] > np.linalg.norm(np.ptp(vertices, axis=0)):
-        place = ", ".join(f"{x:.4g}" for x in vertices[nearest])
-        message = f"is {away[nearest]:.3g} m from the nearest vertex, at ({place}) m"
-        raise InputError(None, "at", message)
 
 
 def _saves(row: RelaxedMinimum, base: RelaxedMinimum) -> bool:
@@ -131,11 +114,6 @@ class _Asked:
         self._quick = prepared.arm.named and prepared.scene.tolerance is None
         # The scene without each thing that was tried alone, where more is valid then.
         self._freer: dict[Relaxation, _Known] = {}
-
-    @property
-    def stages(self) -> Stages:
-        """Of the scene as it is."""
-        return self._known.stages
 
     @property
     def _clock(self) -> StageClock:
@@ -334,36 +312,3 @@ def _same(first: Stages, second: Stages) -> bool:
     return np.array_equal(first.candidates.valid, second.candidates.valid) and np.array_equal(
         first.links.linked, second.links.linked
     )
-
-
-def _reasons_at(prepared: PreparedScene, stages: Stages, point: Array) -> tuple[BranchHere, ...]:
-    """What each branch does at the vertex nearest to a point in m, and where its color ends."""
-    vertices, coloring = prepared.surface.vertices, stages.cleaned.coloring
-    away = np.linalg.norm(vertices - point, axis=1)
-    here = int(np.argmin(away))
-    from_here = np.linalg.norm(vertices - vertices[here], axis=1)
-    rows = []
-    for branch, name in enumerate(stages.branches):
-        own = coloring.node_color[:, branch]
-        if own[here] < 0:
-            fails = _failing(prepared, stages, here, branch)
-            rows.append(BranchHere(name, None, fails))
-            continue
-        color = coloring.names[own[here]]
-        other = np.flatnonzero(own != own[here])
-        if not len(other):
-            rows.append(BranchHere(name, color, ()))
-            continue
-        nearest = int(other[np.argmin(from_here[other])])
-        by = _failing(prepared, stages, nearest, branch)
-        rows.append(BranchHere(name, color, (), float(from_here[nearest]), by))
-    return tuple(rows)
-
-
-def _failing(prepared: PreparedScene, stages: Stages, vertex: int, branch: int) -> tuple[str, ...]:
-    """All tests that a candidate fails."""
-    joints = stages.candidates.configurations[vertex, branch]
-    if np.isnan(joints).any():
-        return ("no solution",)
-    failed = prepared.judge.all_failures(joints[None])
-    return tuple(name for name, hit in failed.items() if hit[0])

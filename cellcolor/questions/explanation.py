@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from cellcolor.data.wording import count, lift_offs_of
@@ -73,38 +73,6 @@ class RelaxedMinimum:
         return f"{known}{proof}, {area}{what}{f' ({self.note})' if self.note else ''}"
 
 
-@dataclass(frozen=True)
-class BranchHere:
-    """What a branch does at one vertex.
-
-    Attributes:
-        branch: its name.
-        color: its color there; None where it has none.
-        fails: the tests that it fails there; "no solution" alone where it does not reach.
-        ends_m: how far the nearest vertex is where it has another color or none, m; None if there
-            is none, or if it has no color here.
-        ends_by: the tests that it fails at that vertex.
-    """
-
-    branch: str
-    color: str | None
-    fails: tuple[str, ...]
-    ends_m: float | None = None
-    ends_by: tuple[str, ...] = ()
-
-    def to_document(self) -> dict[str, Any]:
-        """The JSON object."""
-        return asdict(self)
-
-    def __str__(self) -> str:
-        if self.color is None:
-            return f"{self.branch}: {', '.join(self.fails) or 'given up as a sliver'}"
-        if self.ends_m is None:
-            return f"{self.branch}: has a color here and everywhere"
-        why = ", ".join(self.ends_by) or "the way there is not continuous"
-        return f"{self.branch}: has a color here, which ends {1e3 * self.ends_m:.0f} mm away: {why}"
-
-
 @dataclass(frozen=True, eq=False)
 class Explanation:
     """What holds an arm back in a scene.
@@ -117,7 +85,6 @@ class Explanation:
             a longer tool, whether it saves one or not.
         sets: the smallest sets that save a lift-off where no single thing does (minimal correction
             sets).
-        here: what each branch does at the vertex that was asked about; empty if none was.
         complete: whether the time limit left nothing out.
     """
 
@@ -126,14 +93,7 @@ class Explanation:
     alone: tuple[RelaxedMinimum, ...]
     amounts: tuple[RelaxedMinimum, ...] = ()
     sets: tuple[RelaxedMinimum, ...] = ()
-    here: tuple[BranchHere, ...] = ()
     complete: bool = True
-
-    def documents(self) -> Iterator[dict[str, Any]]:
-        """The JSON object of each row; those of branches have what the scene as it is needs."""
-        yield from (row.to_document() for row in self)
-        scene = self.base.to_document()
-        yield from (scene | branch.to_document() for branch in self.here)
 
     def __iter__(self) -> Iterator[RelaxedMinimum]:
         yield self.base
@@ -176,7 +136,6 @@ class Explanation:
             lines.append(f"  no change without: {', '.join(_in_short(same))}")
         if self.only_moving_helps:
             lines.append("  nothing of this helps: move the part (cellcolor place)")
-        lines += [f"  at the point, {branch}" for branch in self.here]
         if not self.complete:
             lines.append("  the time limit came before everything was tried")
         return "\n".join(lines)

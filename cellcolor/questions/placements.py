@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, replace
-from math import floor, isfinite, nan
+from dataclasses import asdict, dataclass
+from math import floor, isfinite
 from typing import Any
 
-from cellcolor.data.prices import check_price
+from cellcolor.data.prices import check_share
 from cellcolor.data.wording import count, lift_offs_of
 from cellcolor.errors import InputError
 
@@ -21,7 +21,6 @@ Pose = tuple[float, float, float, float, float, float]
 Ranges = Mapping[str, tuple[float, float]]
 """From where to where each variable goes; those that are missing stay."""
 
-_MOST_TILES = 1000
 SAME_SHARE = 1e-9
 """Shares of an area that differ by no more are the same."""
 _FEW = 3  # reasons of refusals that are told
@@ -39,8 +38,8 @@ def pose_document(pose: Pose) -> dict[str, list[float]]:
 
 
 def _most_common(reasons: Counter[str]) -> str:
-    """The commonest reasons, each with its number, as in "nothing is reached: 5"."""
-    listed = [f"{reason}: {number}" for reason, number in reasons.most_common(_FEW)]
+    """The commonest reasons, each with its number, as in "it would stand in the ground (5)"."""
+    listed = [f"{reason} ({number})" for reason, number in reasons.most_common(_FEW)]
     return "; ".join(listed) + "; …" * (len(reasons) > _FEW)
 
 
@@ -53,17 +52,13 @@ class PlacementQuestion:
             angles ``roll``, ``pitch`` and ``yaw`` (extrinsic x, y, z) in rad. What is not in it
             stays.
         cover: the share of the whole surface that has to be covered, 0 to 1; None for as much as
-            where the part stands, and for any share if ``uncovered_price`` is given.
+            where the part stands.
         points: placements that are tried all over the ranges; about three quarters as many, 15 at
             least, are tried around the best of them.
         best: how many are proved on the scene's own mesh and listed.
         vertices: about how many the coarse mesh has on which placements are tried.
         base: move the arm's base instead of the part, upright; its ranges are those of the base in
             the scene's world, where it stands in the origin.
-        uncovered_price: in lift-offs, of the whole surface: the sum of lift-offs and of this price
-            times the uncovered share is least. With 0 lift-offs come first, then the area.
-        tiles: of one or two ranges a map is made, with so many tiles along each: the placements
-            tried all over the ranges are the middles of its tiles, whatever ``points`` says.
         leeway: tell how far the best ones may be off before their lift-offs rise, tried up to so
             many m.
         seed: for all random choices.
@@ -78,8 +73,6 @@ class PlacementQuestion:
     best: int = 3
     vertices: int = 300
     base: bool = False
-    uncovered_price: float = 0.0
-    tiles: int | None = None
     leeway: float | None = None
     seed: int = 0
 
@@ -87,20 +80,13 @@ class PlacementQuestion:
     def of(cls, **given: Any) -> PlacementQuestion:
         """A question whose ranges are given one by one; a range that is None is missing."""
         named = {name: given.pop(name, None) for name in VARIABLES}
-        question = cls(
-            ranges={name: own for name, own in named.items() if own is not None}, **given
-        )
-        if question.cover is None and question.uncovered_price:
-            return replace(question, cover=0.0)
-        return question
+        return cls(ranges={name: own for name, own in named.items() if own is not None}, **given)
 
     def __post_init__(self) -> None:
         for name in ("points", "best", "vertices"):
             if getattr(self, name) < 1:
                 raise InputError(None, name, f"must be 1 or more, is {getattr(self, name)}")
-        if self.cover is not None and not 0 <= self.cover <= 1:
-            raise InputError(None, "cover", f"must be from 0 to 1, is {self.cover:g}")
-        check_price("uncovered_price", self.uncovered_price)
+        check_share("cover", self.cover)
         if self.base and self.leeway is not None:
             raise InputError(None, "leeway", "is asked of a part only, not of a moved base")
         if self.leeway is not None and not 0 < self.leeway < 1:
@@ -110,11 +96,6 @@ class PlacementQuestion:
         if not self.ranges:
             message = f"nothing may move: give a range of {', '.join(VARIABLES)}"
             raise InputError(None, None, message)
-        if self.tiles is not None and not (
-            len(self.ranges) <= 2 and 1 <= self.tiles <= _MOST_TILES
-        ):
-            message = f"a map needs one or two ranges, and 1 to {_MOST_TILES} tiles along each"
-            raise InputError(None, "tiles", message)
 
     def _check_range(self, name: str, given: tuple[float, float]) -> None:
         try:
@@ -196,22 +177,16 @@ class PlacedMinimum:
         """Of a placement that was not built whole, at least."""
         return lift_offs_of(self.at_least) if self.at_least else self.lift_offs
 
-    def value(self, variable: str) -> float:
-        """Of one of :data:`VARIABLES`."""
-        return self.pose[VARIABLES.index(variable)]
-
-    def rank(self, cover: float, uncovered_price: float = 0.0) -> tuple[bool, float, bool, float]:
+    def rank(self, cover: float) -> tuple[bool, int, bool, float]:
         """What a better placement has less of.
 
-        Enough area comes first, then the number of segments plus the price of what is left
-        uncovered, then the proof, then the area left uncovered. A placement that was not built
-        whole has no more of it than it will have then.
+        Enough area comes first, then the number of segments, then the proof, then the area left
+        uncovered. A placement that was not built whole has no more of it than it will have then.
         """
         segments = self.segments or self.at_least
         enough = segments > 0 and self.covered_share >= cover - SAME_SHARE
-        left = 1.0 - self.covered_share
-        cost = segments + uncovered_price * left if enough else 0.0
-        return not enough, cost, not (self.proved_for_surface or self.at_least), left
+        unproved = not (self.proved_for_surface or self.at_least)
+        return not enough, segments if enough else 0, unproved, 1.0 - self.covered_share
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
@@ -234,47 +209,11 @@ class PlacedMinimum:
             number = f"at least {count(least, 'lift-off')}, " if least else ""
             return f"{place}: {number}at most {area}"
         if self.lift_offs is None:
-            return f"{place}: {self.refused or 'not solved in time'}"
+            why = f"the part cannot stand there: {self.refused}"
+            return f"{place}: {why if self.refused else 'not solved in time'}"
         proof = "" if self.proved_for_surface else " (not proved)"
         number = count(self.lift_offs, "lift-off")
         return f"{place}: {number}{proof}, {area}"
-
-
-@dataclass(frozen=True, eq=False)
-class PlacementMap:
-    """The fewest lift-offs with the part in the middle of each tile, on the coarse mesh.
-
-    Of tiles that are not among the best ones there are bounds, from the vertices and the edges
-    along which the arm moves without a jump.
-
-    Attributes:
-        ranges: one or two, by their variables.
-        tiles: along each.
-        rows: of the tiles, row by row: the first variable goes fastest; None where the time limit
-            came first.
-        cover: the share that is enough on this mesh.
-    """
-
-    ranges: Mapping[str, tuple[float, float]]
-    tiles: int
-    rows: tuple[PlacedMinimum | None, ...]
-    cover: float = 0.0
-
-    def lift_offs(self) -> Iterator[float]:
-        """Of each tile, at least; NaN where the part cannot stand, or where it cannot cover enough.
-
-        Where it was built whole the number is told in any case.
-        """
-        for row in self.rows:
-            short = row is not None and row.at_least and row.rank(self.cover)[0]
-            least = None if row is None or short else row.least_lift_offs
-            yield nan if least is None else least
-
-    def percents(self) -> Iterator[float]:
-        """Of each tile, the area that is covered, at most; NaN where the part cannot stand."""
-        for row in self.rows:
-            stands = row is not None and row.least_lift_offs is not None
-            yield 100 * row.covered_share if row is not None and stands else nan
 
 
 @dataclass(frozen=True, eq=False)
@@ -289,10 +228,7 @@ class Placements:
         tried: all others, most of them on a coarser mesh, in the order in which they were asked; of
             those that could not be among the best there are bounds only.
         complete: whether the time limit left nothing out.
-        map: where it was asked for.
         base: whether the arm's base is moved instead of the part.
-        uncovered_price: of the whole surface, in lift-offs; the best have the least sum of
-            lift-offs and of this price times the share left uncovered.
     """
 
     name: str
@@ -301,9 +237,7 @@ class Placements:
     best: tuple[PlacedMinimum, ...]
     tried: tuple[PlacedMinimum, ...]
     complete: bool = True
-    map: PlacementMap | None = None
     base: bool = False
-    uncovered_price: float = 0.0
 
     def __iter__(self) -> Iterator[PlacedMinimum]:
         yield self.here
@@ -321,14 +255,12 @@ class Placements:
         asked = f"{100 * self.cover:.1f} % of the area"
         if not enough:
             lines.append(f"  no placement that was tried covers {asked}{self._most()}")
-        refused = Counter(row.refused for row in self.tried if row.refused)
         tried = count(len(self.tried), "placement")
-        why = f" ({_most_common(refused)})" if refused else ""
         bounded = sum(row.at_least > 0 for row in self.tried)
-        lines.append(
-            f"  {tried} tried that had to cover {asked}, {refused.total()} of them refused{why}, "
-            f"{bounded} left aside by bounds"
-        )
+        lines.append(f"  {tried} tried that had to cover {asked}, {bounded} left aside by bounds")
+        if refused := Counter(row.refused for row in self.tried if row.refused):
+            why = _most_common(refused)
+            lines.append(f"  in {refused.total()} of them the part cannot stand: {why}")
         if not self.complete:
             lines.append("  the time limit came before everything was tried")
         return "\n".join(lines)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf
-from typing import Any
 
 import numpy as np
 
@@ -108,28 +106,7 @@ def read_place(text: str, field: str) -> Place:
     document = read_document(text)
     if document.get("format") == LabelledSurface.FORMAT:
         return LabelledSurface.read(text)
-    content = _list_of(text, document, "mask")
-    if not all(isinstance(one, bool) for one in content):
-        raise InputError(text, "mask", "must be true or false for each vertex")
-    return content
-
-
-def read_weights(file: str) -> list[float]:
-    """What each vertex weighs, from a JSON file whose member ``weights`` is a list of numbers.
-
-    Raises:
-        InputError: it is something else; names the file.
-    """
-    content = _list_of(file, read_document(file), "weights")
-    for place, one in enumerate(content):
-        if type(one) not in (int, float) or not 0 <= one < inf:
-            message = f"must be a number from 0 on, is {one!r}"
-            raise InputError(file, f"weights[{place}]", message)
-    return content
-
-
-def _list_of(file: str, document: Mapping[str, Any], member: str) -> list[Any]:
-    content = document.get(member)
-    if not isinstance(content, list):
-        raise InputError(file, member, "must be a list with an entry for each vertex")
+    content = document.get("mask")
+    if not isinstance(content, list) or not all(isinstance(one, bool) for one in content):
+        raise InputError(text, "mask", "must be a list of true or false for each vertex")
     return content

@@ -34,7 +34,7 @@ from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 
 _FITTED = 4  # times that a displacement is scaled; a turn moves points along arcs
-_NOTHING = "nothing is reached"
+_NOTHING = "the arm reaches nothing of it"
 _FINE_ENOUGH = 1.5  # times the vertices that are wanted; a mesh up to there is not made coarser
 
 
@@ -46,13 +46,6 @@ def pose_of(placement: Placement) -> Pose:
 def spread(ranges: Ranges, start: Pose, count: int, seed: int) -> list[Pose]:
     """Placements all over the ranges; a scrambled Sobol sequence."""
     return _scaled(ranges, start, _sobol(len(ranges), count, seed))
-
-
-def middles(ranges: Ranges, start: Pose, tiles: int) -> list[Pose]:
-    """The middles of the tiles of a map, row by row: the first range varies fastest."""
-    steps = (np.arange(tiles) + 0.5) / tiles
-    grid = np.meshgrid(*[steps] * len(ranges), indexing="ij")
-    return _scaled(ranges, start, np.column_stack([part.ravel() for part in grid[::-1]]))
 
 
 def around(ranges: Ranges, best: Pose, share: float, count: int, seed: int) -> list[Pose]:
@@ -204,7 +197,7 @@ def minima_at(
             elif within is None:
                 rows.append(_bounds(there, pose, cover or 0.0, deadline))
             else:
-                rows.append(PlacedMinimum(pose, None, 0.0, False, 0, f"stands in {within}"))
+                rows.append(PlacedMinimum(pose, None, 0.0, False, 0, f"it would stand in {within}"))
         except OutOfTime:
             break
         except InputError as error:

@@ -20,7 +20,6 @@ from cellcolor.frontend.scene import Scene
 from cellcolor.questions.placements import (
     Leeway,
     PlacedMinimum,
-    PlacementMap,
     PlacementQuestion,
     Placements,
     Pose,
@@ -31,7 +30,6 @@ from cellcolor.questions.placing import (
     displaced,
     distance,
     is_inside,
-    middles,
     pose_of,
     spread,
 )
@@ -112,11 +110,6 @@ class _Search:
         self._listed: list[PlacedMinimum] = []
         self._others: list[PlacedMinimum] = []
         self._chosen: list[Pose] = []
-        asked, start = question, here.pose
-        if asked.tiles is None:
-            self._whole = spread(asked.ranges, start, asked.points, asked.seed)
-        else:
-            self._whole = middles(asked.ranges, start, asked.tiles)
 
     def try_on_coarse_mesh(self, deadline: Deadline) -> None:
         """Try placements all over the ranges, then around the best ones."""
@@ -127,7 +120,8 @@ class _Search:
             # The share of a coarse mesh is another one: like is compared with like.
             for row in self._minima(coarse, mesh, [self._here.pose]):
                 self._enough = row.covered_share
-        self._try(coarse, mesh, [self._here.pose, *self._whole])
+        here = self._here.pose
+        self._try(coarse, mesh, [here, *spread(asked.ranges, here, asked.points, asked.seed)])
         for number, share in enumerate(_CLOSER, 1):
             each = max(asked.points // 20, 1)
             best = self._best_of(coarse, mesh, self._tried, _AROUND, self._enough)
@@ -157,11 +151,6 @@ class _Search:
 
     def found(self) -> Placements:
         """The answer."""
-        asked, tiled = self._question, None
-        if asked.tiles is not None:
-            by_pose = {row.pose: row for row in self._tried}
-            tiles = tuple(by_pose.get(pose) for pose in self._whole)
-            tiled = PlacementMap(asked.ranges, asked.tiles, tiles, self._enough)
         return Placements(
             self._scene.name,
             self._cover,
@@ -169,9 +158,7 @@ class _Search:
             tuple(self._listed),
             (*self._tried, *self._others),
             self.complete,
-            tiled,
-            asked.base,
-            asked.uncovered_price,
+            self._question.base,
         )
 
     def _minima(
@@ -205,10 +192,10 @@ class _Search:
     def _look_best(
         self, rows: Sequence[PlacedMinimum], count: int, cover: float
     ) -> list[PlacedMinimum]:
-        ranges, price = self._question.ranges, self._question.uncovered_price
+        ranges = self._question.ranges
         chosen: list[PlacedMinimum] = []
         allowed = [row for row in rows if is_inside(ranges, row.pose)]  # the start may not be
-        for row in sorted(allowed, key=lambda row: row.rank(cover, price)):
+        for row in sorted(allowed, key=lambda row: row.rank(cover)):
             apart = all(distance(ranges, row.pose, other.pose) >= _NEXT for other in chosen)
             if (row.segments or row.at_least) and apart and len(chosen) < count:
                 chosen.append(row)

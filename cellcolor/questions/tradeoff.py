@@ -20,7 +20,6 @@ from ortools.sat.python import cp_model
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.errors import InputError
 from cellcolor.questions.front import Front, FrontPoint
 from cellcolor.solvers import checked
 from cellcolor.solvers.bounds.cover import Region, color_regions
@@ -37,29 +36,20 @@ _WHOLE = 2**40
 def front_of(
     instance: Instance,
     options: Options,
-    *,
-    weights: Sequence[float] | None = None,
-    required: Collection[int] = (),
     progress: Callable[[str], None] | None = None,
 ) -> Front:
     """What each number of lift-offs covers at most, up to the fewest that cover everything.
 
     Args:
         options: deadline, workers and seed; the search space is ``paper``.
-        weights: of each cell; None for its area, or 1 for each where an area is not known.
-        required: cells that have to be covered.
 
     Returns:
         The front. A point that was not proved in time says what is proved.
 
     Raises:
-        InputError: a weight is negative or no number, or a required cell is none of the instance.
         OutOfTime: the deadline came before any division of the whole was known.
     """
-    own = _weights(instance, weights)
-    for cell in required:
-        if not 0 <= cell < len(instance.cells):
-            raise InputError(None, "required", f"there is no cell {cell}")
+    own = _weights(instance)
     whole, total = _integers(own), sum(own)
     report = progress or (lambda _: None)
     report("fewest segments")
@@ -68,7 +58,7 @@ def front_of(
         if instance.nothing_to_cover:
             return Front(instance, (), total)
         raise OutOfTime
-    asked = _Asked(instance, whole, frozenset(required), options, solution)
+    asked = _Asked(instance, whole, options, solution)
     points: list[FrontPoint] = []
     bounds: list[tuple[float, bool]] = []
     for segments in range(1, solution.segments):
@@ -85,25 +75,21 @@ def front_of(
     return Front(instance, tuple(points), total, tuple(bounds))
 
 
-def few_that_cover(
-    instance: Instance, share: float, options: Options, weights: Sequence[float]
-) -> tuple[FrontPoint, int]:
+def few_that_cover(instance: Instance, share: float, options: Options) -> tuple[FrontPoint, int]:
     """Few segments that cover a share, in less time than a front.
 
     Only the cells of the best color regions are solved, so there may be fewer.
 
     Args:
         share: that has to be covered, 0 to 1.
-        weights: of each cell.
 
     Returns:
         What was found, and how many segments any division that covers as much has at least.
 
     Raises:
-        InputError: a weight is negative or no number.
         OutOfTime: the deadline came before any division of the whole was known.
     """
-    whole = _integers(_weights(instance, weights))
+    whole = _integers(_weights(instance))
     solution = checked.solve(instance, replace(options, deadline=options.deadline.share(0.5)))
     if solution.segments is None:
         raise OutOfTime
@@ -112,7 +98,7 @@ def few_that_cover(
     for segments in range(1, solution.surface_lower_bound):
         if segments >= best.segments:
             break
-        cells, at_most = _most_covered(regions, whole, segments, (), options.deadline) or ((), 0)
+        cells, at_most = _most_covered(regions, whole, segments, options.deadline)
         if at_most < share * total:
             continue
         least = segments if least is None else least
@@ -128,18 +114,17 @@ def few_that_cover(
 
 
 class _Asked:
-    """The question about one graph: what its cells weigh, and which are required."""
+    """The question about one graph, and what its cells weigh."""
 
     def __init__(
         self,
         instance: Instance,
         weights: Sequence[int],
-        required: frozenset[int],
         options: Options,
         whole: Solution,
     ) -> None:
         """``whole`` is a solution of all cells."""
-        self._instance, self._weights, self._required = instance, weights, required
+        self._instance, self._weights = instance, weights
         self._options, self._whole = options, whole
         self._regions = color_regions(instance)
 
@@ -147,17 +132,14 @@ class _Asked:
         """The most that a number of segments can cover.
 
         Returns:
-            The best that was found; the share that no division exceeds, -1 where none covers what
-            is required; whether that holds for any division of the surface.
+            The best that was found; the share that no division exceeds; whether that holds for any
+            division of the surface.
 
         Raises:
             OutOfTime: the deadline came before anything was known.
         """
         deadline = self._options.deadline
-        best = _most_covered(self._regions, self._weights, segments, self._required, deadline)
-        if best is None:
-            return None, -1.0, True
-        cells, at_most = best
+        cells, at_most = _most_covered(self._regions, self._weights, segments, deadline)
         total = sum(self._weights)
         if self._whole.surface_lower_bound > segments:
             # Not everything: some cell is left out, and it is left out whole.
@@ -165,9 +147,7 @@ class _Asked:
         found = self._covering(cells, segments)
         holds_for_surface = True
         if found is None or found[0] < at_most:
-            paper = least_left_out(
-                self._instance, self._weights, segments, self._required, self._options
-            )
+            paper = least_left_out(self._instance, self._weights, segments, self._options)
             if paper is not None:
                 other = self._covering(set(range(len(self._weights))) - paper[0], segments)
                 found = max(filter(None, (found, other)), key=lambda one: one[0], default=None)
@@ -199,14 +179,15 @@ def _most_covered(
     regions: Sequence[Region],
     weights: Sequence[int],
     segments: int,
-    required: Collection[int],
     deadline: Deadline,
-) -> tuple[Collection[int], int] | None:
+) -> tuple[Collection[int], int]:
     """The cells that a few color regions cover, of the greatest weight.
 
     Returns:
-        What they cover, all of it, and the weight that no choice exceeds; None if so few regions
-        do not cover what is required.
+        What they cover, all of it, and the weight that no choice exceeds.
+
+    Raises:
+        OutOfTime: the deadline came first.
     """
     segments = min(segments, len(regions))  # one region may need several
     if comb(len(regions), segments) <= _FEW_CHOICES:  # a model takes longer to build than these
@@ -215,9 +196,6 @@ def _most_covered(
             covers[number, list(cells)] = True
         choices = np.array(list(combinations(range(len(regions)), segments)))
         covered = covers[choices].any(axis=1)
-        covered = covered[covered[:, list(required)].all(axis=1)]
-        if not len(covered):
-            return None
         each = covered @ np.array(weights)
         best = int(np.argmax(each))
         return set(np.flatnonzero(covered[best]).tolist()), int(each[best])
@@ -229,12 +207,10 @@ def _most_covered(
             covering[cell].append(literal)
     model.add(sum(chosen) <= segments)
     gains = []
-    for cell, literals in enumerate(covering):
-        if cell in required:
-            model.add_bool_or(literals)
+    for weight, literals in zip(weights, covering, strict=True):
         covered = model.new_bool_var("")
         model.add_bool_or([~covered, *literals])
-        gains.append(weights[cell] * covered)
+        gains.append(weight * covered)
     model.maximize(sum(gains))
     solver = make_cp_solver(deadline, 1, 0)
     # As for set covers, the bound comes from the linear relaxation.
@@ -242,8 +218,6 @@ def _most_covered(
     status, interrupt = solve_interruptibly(solver, model)
     if interrupt is not None:
         raise interrupt
-    if status == cp_model.INFEASIBLE:
-        return None
     if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         raise OutOfTime
     found: set[int] = set()
@@ -254,22 +228,11 @@ def _most_covered(
     return found, max(weight, int(solver.best_objective_bound + 0.5))
 
 
-def _weights(instance: Instance, given: Sequence[float] | None) -> list[float]:
-    """What each cell weighs."""
-    if given is None:
-        areas = [cell.area for cell in instance.cells]
-        known = [area for area in areas if area is not None]
-        return known if len(known) == len(areas) and sum(known) > 0 else [1.0] * len(areas)
-    if len(given) != len(instance.cells):
-        message = f"must be one for each of {len(instance.cells)} cells, are {len(given)}"
-        raise InputError(None, "weights", message)
-    for cell, weight in enumerate(given):
-        if not 0 <= weight < float("inf"):
-            message = f"must be a number from 0 on, is {weight!r}"
-            raise InputError(None, f"weights[{cell}]", message)
-    if given and sum(given) == 0:
-        raise InputError(None, "weights", "are all 0: there is nothing to weigh")
-    return list(given)
+def _weights(instance: Instance) -> list[float]:
+    """The area of each cell, or 1 for each where an area is not known."""
+    areas = [cell.area for cell in instance.cells]
+    known = [area for area in areas if area is not None]
+    return known if len(known) == len(areas) and sum(known) > 0 else [1.0] * len(areas)
 
 
 def _integers(weights: Sequence[float]) -> list[int]:

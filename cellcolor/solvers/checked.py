@@ -32,11 +32,10 @@ FEW_STEPS = 20_000
 """Choices for each certificate of a result, some seconds; hardly any takes more than a few."""
 
 
-def check_able(name: str, options: Options, *, start: bool = False, schemes: bool = False) -> None:
+def check_able(name: str, options: Options, *, schemes: bool = False) -> None:
     """Reject a task that a solver does not declare.
 
     Args:
-        start: whether it is to start from a division, even if the options have none yet.
         schemes: whether it is to list all optimal schemes.
 
     Raises:
@@ -44,7 +43,7 @@ def check_able(name: str, options: Options, *, start: bool = False, schemes: boo
     """
     able = make_solver(name).abilities
     for field, asked, can in (
-        ("start", start or options.start is not None, able.start),
+        ("start", options.start is not None, able.start),
         ("schemes", schemes, able.optimal_schemes),
     ):
         if asked and not can:

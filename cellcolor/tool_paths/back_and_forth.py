@@ -11,7 +11,7 @@ from cellcolor.arrays import Array, Index, unit
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
 from cellcolor.tool_paths.contour import EVENED, FINEST
-from cellcolor.tool_paths.distances import evened, off_border, ways_from
+from cellcolor.tool_paths.distances import evened, off_border, ways_from, with_room_inside
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.level_lines import LevelLine, level_lines, slice_along
 from cellcolor.tool_paths.triangles import Triangles
@@ -46,6 +46,7 @@ def lay_back_and_forth(mesh: Triangles, spacing: float, deadline: Deadline, rows
             (field,) = fields_of("")(mesh)
         found.append(_rows(*_from_the_middle(mesh, field), spacing))
     cut, lines = min(found, key=lambda one: _turns(one[0], one[1], spacing))
+    cut = with_room_inside(cut)
     return Laid(cut, _one_after_the_other(cut, lines, spacing, deadline) if lines else [])
 
 

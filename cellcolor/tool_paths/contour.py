@@ -7,7 +7,7 @@ import numpy as np
 from cellcolor.arrays import Array, Index
 from cellcolor.deadline import Deadline
 from cellcolor.mesh.triangle_mesh import grouped
-from cellcolor.tool_paths.distances import evened
+from cellcolor.tool_paths.distances import evened, with_room_inside
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.joined_loops import join_loops
 from cellcolor.tool_paths.level_lines import Sliced, level_lines, slice_along
@@ -91,7 +91,8 @@ def _lay_loops(mesh: Triangles, distances: Array, spacing: float, deadline: Dead
     cores = slice_along(sliced.mesh, heights, np.array([_CORE * spacing]))
     rows += [line.vertices for line in level_lines(cores) if len(line.vertices) > 2]
     deadline.check()
-    return Laid(cores.mesh, join_loops(cores.mesh, rows, spacing, deadline))
+    mesh = with_room_inside(cores.mesh)
+    return Laid(mesh, join_loops(mesh, rows, spacing, deadline))
 
 
 def _fitting(farthest: float, spacing: float) -> float:

@@ -14,7 +14,6 @@ from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.wording import in_meters, looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.tool_paths.inside_border import inside_border
 from cellcolor.tool_paths.interface import Laid, Pattern
 from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
 from cellcolor.tool_paths.overlap import Overlap, clipped, owned
@@ -44,8 +43,8 @@ class Covered:
         measures: of each path, in the same order.
         in_all: of all together.
         uncovered: what no path comes near to, and why, the largest first.
-        along_border: of each path, its points beside a border that it runs along; where a chord
-            cuts a corner there, it may lie beyond the border.
+        along_border: of each path, its points near a border; where a chord cuts a corner there, it
+            may lie beyond the border.
     """
 
     paths: ToolPaths
@@ -118,7 +117,7 @@ def cover(
             uncovered.append(Uncovered(region.segment, area, place, cause))
             continue
         line, own, left = _better(lay, part, region.segment, spacing_m, deadline)
-        path, beside = inside_border(region, line)
+        path, beside = line.path(region.segment, region.color)
         paths.append(path)
         along_border.append(beside)
         measures.append(own)

@@ -10,9 +10,10 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.sparse.linalg import cg
 
 from cellcolor.arrays import Array, Index
-from cellcolor.tool_paths.triangles import Triangles
+from cellcolor.tool_paths.triangles import Triangles, split_at
 
 _ROUNDS = 300
+_TOUCHING = 1000.0  # the factor of edges that touch the border
 _SLIVER = 1e-6  # of a length squared; triangles and parts of vertices count as no smaller
 
 
@@ -57,19 +58,9 @@ def evened(mesh: Triangles, values: Array, length: float) -> Array:
     Args:
         length: waves of six times that length are made half as high, m.
     """
-    corners = mesh.points[mesh.corners]
-    areas = np.maximum(mesh.areas, _SLIVER * length**2)
-    rows, columns, weights = [], [], []
-    for corner in range(3):
-        here, one, other = (np.roll(corners, -corner, axis=1)[:, k] for k in range(3))
-        half = ((one - here) * (other - here)).sum(axis=1) / (4 * areas)  # of the cotangent
-        a, b = mesh.corners[:, corner - 2], mesh.corners[:, corner - 1]
-        rows += [a, b, a, b]
-        columns += [b, a, a, b]
-        weights += [-half, -half, half, half]
-    count = len(values)
-    pairs = np.concatenate(rows), np.concatenate(columns)
-    laplacian = csr_matrix((np.concatenate(weights), pairs), (count, count))
+    from potpourri3d import cotan_laplacian  # only where a path is laid
+
+    laplacian = cotan_laplacian(mesh.points, mesh.corners, denom_eps=_SLIVER * length**2)
     mass = np.maximum(mesh.vertex_areas, _SLIVER * length**2)
     bends = diags(np.where(mesh.border, 0.0, length**2 / np.sqrt(mass))) @ laplacian
     system = (diags(mass) + bends.T @ bends).tocsr()
@@ -81,13 +72,24 @@ def evened(mesh: Triangles, values: Array, length: float) -> Array:
     return np.asarray(np.clip(found, values - length, values + length))
 
 
+def with_room_inside(mesh: Triangles) -> Triangles:
+    """The same mesh with a way off the border through each triangle.
+
+    An edge that leads from border to border through the inside gets a vertex in its middle, old
+    vertices first. On the border itself rounding decides on which side of a crack a point lies.
+    """
+    return split_at(mesh, mesh.border[mesh.edges].all(axis=1) & (mesh.triangles_at > 1), 0.5)[0]
+
+
 def off_border(mesh: Triangles, room: float) -> Array:
     """Weights (e,) of edges, m: their lengths, up to tripled near the border of the mesh.
 
     With these weights shortest ways stay in the middle of narrow places. At the distance ``room``
-    from the border, m, and beyond, weights are lengths.
+    from the border, m, and beyond, weights are lengths. No way touches the border that can do
+    without.
     """
     if not mesh.border.any():
         return mesh.lengths
     near = 1.0 - np.minimum(mesh.from_border / room, 1.0)
-    return np.asarray(mesh.lengths * (1.0 + 2.0 * near[mesh.edges].mean(axis=1)))
+    touching = np.where(mesh.border[mesh.edges].any(axis=1), _TOUCHING, 1.0)
+    return np.asarray(mesh.lengths * touching * (1.0 + 2.0 * near[mesh.edges].mean(axis=1)))

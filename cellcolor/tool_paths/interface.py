@@ -15,8 +15,8 @@ class Laid:
 
     Attributes:
         mesh: a mesh made by cutting the triangles of the one that was to be covered.
-        walk: its vertices along the path, each the neighbor of the one before; empty if the part
-            is too narrow for the pattern.
+        walk: its vertices along the path, each the neighbor of the one before, none on the mesh's
+            border; empty if the part is too narrow for the pattern.
     """
 
     mesh: Triangles

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from cellcolor.arrays import Array, Index, Mask, to_nearest
+from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import Deadline
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.triangles import Triangles
@@ -27,6 +28,8 @@ _OFF = 0.25  # spacings; a traced point may be so far from where it was to lie
 _ROUNDS = 4
 _MOST_CROSSED = 100  # triangles, between two points
 _OUTSIDE = 1e-9  # of a triangle; points this far outside of it count as inside
+_STRAIGHT = 1e-8  # m; a point this near to the straight way past it is left out
+_NEAR_BORDER = 0.001  # m; as far as samples are apart
 _SAME = 1e-9  # m; points nearer to each other are one. Shorter sums of normals have no direction
 
 Row = list[float]
@@ -49,6 +52,28 @@ class Line:
     normals: Array
     triangles: Index
     vertices: Index
+
+    def path(self, segment: int, color: int) -> tuple[ToolPath, Index]:
+        """The path in the world, without points on a straight way past them in one triangle.
+
+        Returns:
+            The path, and the numbers of its points near a border, beside which a chord would cut
+            a corner.
+        """
+        faces = self.mesh.faces[self.triangles]
+        needed = np.ones(len(self.points), dtype=bool)
+        before, after = np.diff(self.points, axis=0)[:-1], np.diff(self.points, axis=0)[1:]
+        off = np.linalg.norm(np.cross(before, after), axis=1)
+        straight = off <= _STRAIGHT * np.linalg.norm(before + after, axis=1)
+        straight &= (before * after).sum(axis=1) > 0
+        needed[1:-1] = (faces[1:] != faces[:-1]) | ~straight
+        near = np.zeros(len(self.points), dtype=bool)
+        if self.mesh.border.any():
+            near = (self.vertices >= 0) & (self.mesh.from_border[self.vertices] < _NEAR_BORDER)
+        path = ToolPath(
+            segment, color, self.points[needed], self.normals[needed], faces[needed[:-1]]
+        )
+        return path, np.flatnonzero(near[needed])
 
 
 def line_of(laid: Laid) -> Line:

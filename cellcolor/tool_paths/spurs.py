@@ -7,7 +7,7 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline
 from cellcolor.mesh.triangle_mesh import grouped
-from cellcolor.tool_paths.distances import off_border, ways_from
+from cellcolor.tool_paths.distances import off_border, ways_from, with_room_inside
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.triangles import Triangles
 
@@ -23,7 +23,7 @@ def with_spurs(laid: Laid, spacing: float, deadline: Deadline) -> Laid:
 
     Where the pattern found no room for a path there is one along the part, and spurs from it.
     """
-    mesh = laid.mesh
+    mesh = with_room_inside(laid.mesh)
     weights = off_border(mesh, spacing / 2)
     graph = mesh.graph(weights)
     walk = laid.walk if len(laid.walk) > 1 else _along(mesh, weights, spacing)
@@ -36,6 +36,8 @@ def with_spurs(laid: Laid, spacing: float, deadline: Deadline) -> Laid:
         spurs = dict[int, list[int]]()
         for target, far in targets:
             way = nearest.back_from(target)
+            if mesh.border[target] and len(way) > 2:
+                way = way[1:]
             spur = way[_short_of(mesh, way, min(_STOP * spacing, far / 2)) :]
             spurs.setdefault(spur[-1], []).extend([*spur[-2::-1], *spur[1:]])
         longer: list[int] = []

@@ -28,7 +28,7 @@ def main(folder: Path) -> None:
             run("solve", instance, "-o", solution)
             show(folder / f"scene-{name}.png", instance, solution)
         show(folder / "wok-cells.png", SCENES / "wok.json")
-        show(folder / "wok-graph.png", SCENES / "wok.json", "--graph")
+        show(folder / "wok-graph.png", SCENES / "wok.json", "--view", "graph")
         for name in PART_NAMES:
             instance, solution = Path(work) / f"{name}.json", Path(work) / f"{name}.solution.json"
             run("build", PARTS / f"{name}.toml", "-o", instance)

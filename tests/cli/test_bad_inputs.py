@@ -192,8 +192,6 @@ USAGE = {
     "time that is not a number": ["solve", RING, "--time-limit", "nan"],
     "no workers": ["solve", RING, "--workers", "0"],
     "negative seed": ["solve", RING, "--seed", "-1"],
-    "warm start with dfs": ["solve", RING, "--solver", "dfs", "--warm-start", RING],
-    "warm start of two": ["solve", RING, RING, "--warm-start", RING],
     "build without output": ["build", str(PAPER / "ring.surface.json")],
     "check of one file": ["check", RING],
     "paint without output": ["paint", RING, RING],

@@ -1,4 +1,4 @@
-"""``cellcolor bench``: runs, tables that are continued, summaries, plots."""
+"""``cellcolor bench``: runs, tables that are continued, summaries."""
 
 from __future__ import annotations
 
@@ -21,7 +21,6 @@ from cellcolor import library
 from cellcolor.lab.runs.row import Row
 from cellcolor.lab.runs.table import read_table
 from cellcolor.lab.workers import Task
-from cellcolor.processes import Limits
 from cellcolor.solvers.registry import GROUP
 
 pytestmark = pytest.mark.second
@@ -145,6 +144,9 @@ class TestRun:
         assert "1 run, 1 with a proved minimum" in out
         assert "left out: the solver clingo is not installed: pip install" in err
         assert len(err.splitlines()) == 2 and str(bad) in err
+        assert run("bench", "run", bad) == 2
+        out, err = capsys.readouterr()
+        assert not out and len(err.splitlines()) == 1 and str(bad) in err
 
     @pytest.mark.usefixtures("fakes")
     def test_a_bound_that_another_solver_beats(self, tmp_path: Path, capsys: Capture) -> None:
@@ -166,10 +168,9 @@ class TestRun:
     def test_a_solver_that_does_not_hear_of_the_end(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        def impatient(function: Work, arguments: tuple[object, ...], limits: Limits) -> Task:
+        def impatient(function: Work, arguments: tuple[object, ...], *most: float) -> Task:
             """Gives the deaf one up soon; the other has its time, however busy the machine is."""
-            limits = Limits(2.0) if "deaf" in arguments else limits
-            return Task(function, arguments, limits)
+            return Task(function, arguments, *((2.0,) if "deaf" in arguments else most))
 
         monkeypatch.setattr("cellcolor.lab.runs.sweep.Task", impatient)
         table = tmp_path / "t.csv"
@@ -240,42 +241,20 @@ class TestRun:
         (line,) = capsys.readouterr().err.splitlines()
         assert message in line
 
-    def test_no_cluster_there(self, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setitem(sys.modules, "distributed", None)
-        # Another test may have imported it before.
-        monkeypatch.delitem(sys.modules, "cellcolor.lab.cluster", raising=False)
-        assert run("bench", "run", RING, "--cluster", "tcp://127.0.0.1:9") == 2
-        assert "--cluster: needs distributed: pip install 'fewest-lift-offs[cluster]'" in (
-            capsys.readouterr().err
-        )
-
 
 class TestTables:
-    def test_summary_and_plots(self, table: Path, tmp_path: Path, capsys: Capture) -> None:
+    def test_summary(self, table: Path, capsys: Capture) -> None:
         assert run("bench", "summary", table) == 0
         out = capsys.readouterr().out
         assert "4 runs on 2 instances" in out
         assert "No two runs contradict each other. On 2 instances two solvers" in out
         assert "| paper | 2/2 | 2/2 |" in out
-        folder = tmp_path / "plots"
-        assert run("bench", "plots", table, "-o", folder) == 0
-        names = ("cactus", "growth-cells", "growth-darts", "profile", "scatter")
-        files = {f"{name}.{suffix}" for name in names for suffix in ("png", "svg")}
-        assert {path.name for path in folder.iterdir()} == files
-        before = {path.name: path.read_bytes() for path in folder.iterdir()}
-        assert run("bench", "plots", table, "-o", folder) == 0  # its own are overwritten
-        assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
 
     def test_what_is_no_table(self, tmp_path: Path, capsys: Capture) -> None:
         other = tmp_path / "other.csv"
         other.write_text("a,b\n1,2\n")
-        for arguments in (
-            ["summary", other],
-            ["plots", other, "-o", tmp_path / "p"],
-            ["run", RING, "-o", other],
-        ):
+        for arguments in (["summary", other], ["run", RING, "-o", other]):
             assert run("bench", *arguments) == 2
             (line,) = capsys.readouterr().err.splitlines()
             assert f"{other}: line 1: " in line
         assert other.read_text() == "a,b\n1,2\n"
-        assert not (tmp_path / "p").exists()

@@ -147,29 +147,6 @@ def test_the_first_hundred_violations(pipe: Pipe, tmp_path: Path, capsys: Captur
     assert "  140 more\n" in capsys.readouterr().out
 
 
-def test_a_better_painting_is_written(row: Path, pipe: Pipe, tmp_path: Path) -> None:
-    better = tmp_path / "better.surface.json"
-    pipe(text(BEST))
-    assert run("check", row, "-", "--better", better) == 0
-    assert not better.exists()  # there is none
-    pipe(text(WORSE))
-    assert run("check", row, "-", "--better", better) == 0
-    surface = LabelledSurface.read(better)
-    plan = Plan.read(tmp_path / "better.plan.json")
-    verdict = cellcolor.judge(surface, plan)
-    assert (verdict.segments, verdict.optimal) == (1, True)
-
-
-def test_a_better_painting_does_not_replace_the_surface(
-    row: Path, pipe: Pipe, capsys: Capture
-) -> None:
-    before = row.read_bytes()
-    pipe(text(WORSE))
-    assert run("check", row, "-", "--better", row) == 2
-    assert "is an input" in capsys.readouterr().err
-    assert row.read_bytes() == before
-
-
 def test_an_optimal_plan_is_required(
     row: Path, pipe: Pipe, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -188,9 +165,7 @@ def test_an_optimal_plan_is_required(
     assert run("check", row, "-") == 0
 
 
-@pytest.mark.parametrize(
-    "option", [["--require-optimal"], ["--cache", "c"], ["--better", "b.surface.json"]]
-)
+@pytest.mark.parametrize("option", [["--require-optimal"], ["--cache", "c"]])
 def test_options_of_plans(
     option: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
 ) -> None:

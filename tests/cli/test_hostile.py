@@ -80,7 +80,6 @@ def test_json(text: str, message: str, tmp_path: Path, capsys: Capture) -> None:
     for command in (["solve", path], ["build", path, "-o", tmp_path / "y.json"]):
         assert message in line_about(path, command, capsys)
     line_about(path, ["check", RING, path], capsys)
-    line_about(path, ["solve", RING, "--warm-start", path], capsys)
     assert list(tmp_path.iterdir()) == [path]
 
 
@@ -233,16 +232,6 @@ class TestStandardOutput:
         command = [sys.executable, "-m", "cellcolor", "solve", str(RING)]
         done = subprocess.run(["sh", "-c", 'exec "$@" >&- 2>&-', "sh", *command])
         assert done.returncode == 2
-
-    def test_nothing_is_solved_for_nobody(self, tmp_path: Path) -> None:
-        """Without ``-o`` there is no use in going on."""
-        reading, writing = os.pipe()
-        os.close(reading)
-        missing = tmp_path / "none.json"
-        command = [sys.executable, "-m", "cellcolor", "solve", "--json", str(RING), str(missing)]
-        done = subprocess.run(command, stdout=writing, stderr=subprocess.PIPE, text=True)
-        os.close(writing)
-        assert done.stderr == "cellcolor: standard output: Broken pipe\n"
 
     def test_letters_that_an_encoding_does_not_have(self, tmp_path: Path) -> None:
         path = tmp_path / "x.json"

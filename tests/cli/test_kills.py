@@ -137,7 +137,7 @@ def strays(folder: Path) -> list[str]:
 
 
 def assert_no_mixture_is_shown(folder: Path) -> None:
-    show = ("show", "w.json", "--reason", "-o", "reason.svg")
+    show = ("show", "w.json", "--view", "reasons", "-o", "reason.svg")
     with chdir(folder), redirect_stderr(io.StringIO()) as errors:
         assert run(*show) == 2
     assert "surface" in errors.getvalue() and not (folder / "reason.svg").exists()
@@ -205,7 +205,7 @@ def test_between_two_renames(tmp_path: Path) -> None:
     process = BUILD.start(folder)
     process.communicate()
     assert process.returncode == 0 and strays(folder) == []
-    assert run("show", folder / "w.json", "--reason", "-o", folder / "x.svg") == 0
+    assert run("show", folder / "w.json", "--view", "reasons", "-o", folder / "x.svg") == 0
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

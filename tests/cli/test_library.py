@@ -96,32 +96,3 @@ def read_alone(source: Path) -> cellcolor.Instance:
     from cellcolor.data.imcgs import read_imcgs
 
     return read_imcgs(source)
-
-
-def test_a_better_solution_is_recognised_and_asked_for(
-    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The stored solution against the index, and against one that knows less."""
-    from dataclasses import replace
-
-    from cellcolor.data.library_index import KnownRange, LibraryIndex
-    from cellcolor.door.shipped import Library, find_file
-
-    entry = INDEX["parallel-corridors"]
-    mine = tmp_path / "mine.json"
-    mine.write_bytes(find_file("parallel-corridors.solution.json").read_bytes())
-    assert run("check", "parallel-corridors", mine) == 0
-    assert "better than" not in capsys.readouterr().out
-    assert entry.paper.upper is not None and entry.paper.upper.value == 3
-    stale = replace(entry, paper=KnownRange(entry.paper.lower, replace(entry.paper.upper, value=4)))
-    monkeypatch.setattr(Library, "index", LibraryIndex((stale, INDEX["ring"])))
-    assert run("check", "parallel-corridors", mine) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[-2:] == [
-        "  better than the library's index: search space paper: 3 segments; the index has 4",
-        "  please send it as parallel-corridors.solution.json "
-        "(docs/library.md, How to contribute a better bound)",
-    ]
-    mine.write_text(mine.read_text().replace('"segments": 3', '"segments": 2'), encoding="utf-8")
-    assert run("check", "parallel-corridors", mine) == 1
-    assert "better than" not in capsys.readouterr().out

@@ -93,7 +93,10 @@ def test_all_files_are_there_and_belong_together(
     assert run("check", *painted) == 0
     assert asked["minimum_lift_offs"] == read["solution.json"].lift_offs == 1
     # The instance is what `build` would have made, its surface and side file beside it.
-    assert run("show", folder / "instance.json", "--reason", "-o", tmp_path / "reach.html") == 0
+    assert (
+        run("show", folder / "instance.json", "--view", "reasons", "-o", tmp_path / "reach.html")
+        == 0
+    )
     said = capsys.readouterr()
     assert "2 segments, 1 lift-off, optimal" in said.out
     assert f"wrote {len(list(folder.iterdir()))} files to {folder}" in said.out

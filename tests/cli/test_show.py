@@ -77,7 +77,7 @@ class TestFiles:
         assert np.ptp(inked) > 0.85 * drawing.shape[1]
 
     @pytest.mark.parametrize("kind", ["html", "png", "svg"])
-    @pytest.mark.parametrize("options", [[], ["--graph"]], ids=str)
+    @pytest.mark.parametrize("options", [[], ["--view", "graph"]], ids=str)
     def test_same_input_same_bytes(self, kind: str, options: list[str], tmp_path: Path) -> None:
         path = saved(DRAWN, tmp_path)
         for name in ("a", "b"):

@@ -57,14 +57,14 @@ def test_files(tmp_path: Path, capsys: Capture) -> None:
     refused([path, "-o", out, "--color", "pink"], capsys, str(path), "'pink'", "0 'red'")
     refused([path, "-o", out, "--color", "3"], capsys, str(path), "'3'")
     refused([path, "-o", out, "--color", "-1"], capsys, "'-1'")
-    refused([path, "-o", out, "--reason"], capsys, "meta.side_file", "missing")
+    refused([path, "-o", out, "--view", "reasons"], capsys, "meta.side_file", "missing")
     refused([path, "-o", out, "--vertex", 0, "--branch", "0"], capsys, "scene")
     assert list(tmp_path.iterdir()) == [path]
 
 
 def test_instances(tmp_path: Path, capsys: Capture) -> None:
     out = tmp_path / "x.png"
-    refused([PAPER / "ring.json", "-o", out], capsys, "ring.json: surface", "--graph")
+    refused([PAPER / "ring.json", "-o", out], capsys, "ring.json: surface", "--view", "graph")
     instance = decompose(DRAWN, "none.surface.json")
     path = tmp_path / "i.json"
     path.write_text(instance.to_json())
@@ -108,12 +108,12 @@ def test_solutions(tmp_path: Path, capsys: Capture) -> None:
 )
 def test_side_files(change: Document, text: str, tmp_path: Path, capsys: Capture) -> None:
     path, _ = side_file(tmp_path, change)
-    refused([path, "--reason", "-o", tmp_path / "x.png"], capsys, "side.npz", text)
+    refused([path, "--view", "reasons", "-o", tmp_path / "x.png"], capsys, "side.npz", text)
 
 
 def test_side_file_that_is_none(tmp_path: Path, capsys: Capture) -> None:
     path, _ = side_file(tmp_path)
-    arguments = [path, "--reason", "-o", tmp_path / "x.png"]
+    arguments = [path, "--view", "reasons", "-o", tmp_path / "x.png"]
     refused([*arguments, "--branch", "middle arm"], capsys, "branch", "'left arm'")
     (tmp_path / "side.npz").write_text("nothing")
     refused(arguments, capsys, "side.npz", "is not a side file")
@@ -127,8 +127,7 @@ def test_side_file_that_is_none(tmp_path: Path, capsys: Capture) -> None:
         ["a.json"],
         ["-o", "x.png"],
         ["a.json", "b.json", "c.json", "-o", "x.png"],
-        ["a.json", "b.json", "--graph", "-o", "x.png"],
-        ["a.json", "--graph", "--reason", "-o", "x.png"],
+        ["a.json", "b.json", "--view", "graph", "-o", "x.png"],
         ["a.toml", "--vertex", "1", "-o", "x.png"],
         ["a.toml", "--vertex", "-1", "--branch", "0", "-o", "x.png"],
         ["a.toml", "--branch", "0", "-o", "x.png"],
@@ -139,7 +138,7 @@ def test_usage(arguments: list[object], capsys: Capture) -> None:
     refused(arguments, capsys, "cellcolor show: ")
 
 
-@pytest.mark.parametrize("options", [["x.svg"], ["x.html", "--graph"]], ids=str)
+@pytest.mark.parametrize("options", [["x.svg"], ["x.html", "--view", "graph"]], ids=str)
 def test_library_not_installed(
     options: list[str], tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -163,6 +162,6 @@ def test_front_end_not_installed(
         monkeypatch.delitem(sys.modules, module)
     for package in ("pinocchio", "trimesh", "fcl"):
         monkeypatch.setitem(sys.modules, package, None)
-    arguments: list[object] = [WOK, "--reason", "-o", tmp_path / "x.png"]
+    arguments: list[object] = [WOK, "--view", "reasons", "-o", tmp_path / "x.png"]
     refused(arguments, capsys, str(WOK), "pip install 'fewest-lift-offs[frontend]'")
     assert list(tmp_path.iterdir()) == []

@@ -76,7 +76,7 @@ def test_side_file_of_another_build(tmp_path: Path, capsys: pytest.CaptureFixtur
         file = wok_file(tmp_path, target_vertices=50, position_m=[0.465, -0.15, height])
         assert main(["build", str(file), "-o", str(tmp_path / f"{name}.json")]) == 0
     (tmp_path / "low.reasons.npz").replace(tmp_path / "high.reasons.npz")
-    show = ["show", str(tmp_path / "high.json"), "--reason", "-o", str(tmp_path / "x.png")]
+    show = ["show", str(tmp_path / "high.json"), "--view", "reasons", "-o", str(tmp_path / "x.png")]
     assert main(show) == 2
     assert "another surface" in capsys.readouterr().err
     assert not (tmp_path / "x.png").exists()

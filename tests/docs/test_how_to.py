@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+import json
 import shlex
 import shutil
 import sys
@@ -13,7 +13,6 @@ from pathlib import Path
 import pytest
 from guides import ROOT, Block, blocks, follow, install, run, section
 
-from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 
 pytestmark = pytest.mark.second
@@ -49,22 +48,25 @@ def test_a_solver(tmp_path: Path) -> None:
     for group, entries in declared["entry-points"].items():
         install(site, declared["name"], group, entries, **{module.stem: module.read_text("utf-8")})
 
-    done = run([*solve, "--json"], ROOT, site)
-    assert done.returncode == 3, done.stderr  # a division, and nothing proved
-    assert '"solver": "random", "status": "feasible"' in done.stdout
-    instance = Instance.read(ROOT / "instances" / "paper" / "ring.json")
-    found_segments = int(re.findall(r'"segments": (\d+)', done.stdout)[0])
-    assert 2 <= found_segments <= len(instance.cells)
+    # The seam of the hole, and the bound with its verified certificate, pass the checker.
+    for limit in ([], ["--time-limit", "0.001"]):
+        done = run([*solve, "--json", *limit], ROOT, site)
+        assert done.returncode == 3, done.stderr  # a division; cutting a cell saves a segment
+        found = json.loads(done.stdout)
+        assert (found["solver"], found["status"], len(found["seams"])) == ("random", "feasible", 1)
+        (bound,) = found["bounds"]
+        assert (bound["kind"], len(bound["certificate"]["cells"])) == ("strangers", bound["value"])
+        assert bound["value"] < found["segments"]
     refused = run([*solve, "--search-space", "surface"], ROOT, site)
     assert refused.returncode == 2 and "the solver random searches paper" in refused.stderr
 
     raced = run(race, ROOT, site)
     assert raced.returncode == 0, raced.stderr
-    # CP-SAT proves the minimum, this one proves nothing.
+    # Two cells that share no color, and every cell whole in two segments: both prove the minimum.
     table = [
-        "| Minima proved, of runs | cp-sat | random |",
+        "| Minima proved, of runs | dfs | random |",
         "|---|--:|--:|",
-        "| paper | 1/1 | 0/1 |",
+        "| paper | 1/1 | 1/1 |",
     ]
     assert "\n".join(table) in raced.stdout
 

@@ -12,7 +12,7 @@ def test_every_recipe_runs() -> None:
     """All in one namespace, as a reader would paste them."""
     text = (ROOT / "docs" / "how-to" / "your-ik.md").read_text("utf-8")
     recipes = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-    assert len(recipes) == 7
+    assert len(recipes) == 6
     known: dict[str, Any] = {}
     for recipe in recipes:
         exec(recipe, known)

@@ -1,4 +1,4 @@
-"""What is left out on purpose: ``cover``, ``required`` and ``left_alone`` of solve and check."""
+"""What is left out on purpose: ``cover`` and ``left_alone`` of solve and check."""
 
 from __future__ import annotations
 
@@ -67,8 +67,6 @@ def test_the_share_is_of_what_is_not_left_alone() -> None:
     half = cellcolor.solve(STRIP, cover=0.5)
     assert (half.lift_offs, half.covered_share) == (0, pytest.approx(of[1] / sum(of.values())))
     assert "50.0 % of what can be covered is asked for" in half.solution.notes[0]
-    needed = cellcolor.solve(STRIP, cover=0.0, required=C_ONLY)
-    assert needed.covered_share == pytest.approx(of[2] / sum(of.values()))
     rest = cellcolor.solve(STRIP, left_alone=C_ONLY)
     assert (rest.lift_offs, rest.covered_share) == (1, 1.0)
     assert f"{of[2] / sum(areas):.1%} of the surface can be covered and is left" in str(
@@ -83,7 +81,6 @@ def test_the_share_is_of_what_is_not_left_alone() -> None:
     [
         ({"cover": 1.5}, "cover"),
         ({"cover": float("nan")}, "cover"),
-        ({"required": C_ONLY}, "required"),
         ({"left_alone": [True]}, "left_alone"),
         ({"left_alone": replace(STRIP, vertices=STRIP.vertices + 1.0)}, "left_alone"),
     ],
@@ -111,10 +108,9 @@ def test_the_files_of_a_share_are_checked_again(
     assert cellcolor.check(file, sol, left_alone=cellcolor.LabelledSurface.read(covered)).valid
     capsys.readouterr()
     for wrong, said in (
-        (("--required", "0,0,0,1,1,1"), "--required needs --cover"),
         (("--cover", "2"), "not in the range"),
         (("--left-alone", "0,0,0"), "No such file"),
-        (("--left-alone", sol), "mask: must be a list"),
+        (("--left-alone", sol), "mask: must be a list of true or false"),
     ):
         assert run("solve", file, *wrong) == 2
         assert said in capsys.readouterr().err

@@ -48,7 +48,7 @@ def test_a_result_is_drawn_by_segment(tmp_path: Path) -> None:
     [
         ({"color": 1}, ["--color", "1"]),
         ({"color": "blue"}, ["--color", "blue"]),
-        ({"view": "graph"}, ["--graph"]),
+        ({"view": "graph"}, ["--view", "graph"]),
     ],
     ids=str,
 )

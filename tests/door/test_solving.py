@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import html
 import pickle
-import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -149,29 +147,6 @@ def _copy(file: Path, folder: Path) -> Path:
     return copy
 
 
-def test_a_notebook_shows_a_table_and_a_picture() -> None:
-    named = replace(HALVES, colors=("<red>", "blue & green"))
-    page = cellcolor.solve(named)._repr_html_()
-    assert "proved for any division" in page
-    table = page.partition("<iframe")[0]
-    cells = [html.unescape(cell) for cell in re.findall("<t[hd]>(.*?)</t[hd]>", table)]
-    assert cells[:4] == ["segment", "color", "cells", "share of surface"]
-    assert {cells[5], cells[9]} == {"<red>", "blue & green"}
-    assert {cells[6], cells[10]} == {"0", "1"}
-    assert page.count("<iframe srcdoc=") == 1 and "src=" not in table
-
-
-def test_a_notebook_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A drawing of the graph needs Matplotlib; what is turned with the mouse needs nothing."""
-    import sys
-
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    monkeypatch.delitem(sys.modules, "cellcolor.pictures.static", raising=False)
-    page = cellcolor.solve(cellcolor.decompose(HALVES))._repr_html_()
-    assert "<td>" in page and "needs matplotlib: pip install" in page and "<iframe" not in page
-    assert "<iframe" in cellcolor.solve(HALVES)._repr_html_()
-
-
 @pytest.mark.parametrize(
     ("options", "text"),
     [
@@ -184,9 +159,6 @@ def test_a_notebook_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> Non
         ({"workers": "two"}, "workers: "),
         ({"search_space": "all"}, "search_space: "),
         ({"strands": 2}, "strands: must be 1 in search space 'paper'"),
-        ({"uncovered_price": -1.0}, "uncovered_price: must be a number from 0 to 1000000, is -1"),
-        ({"uncovered_price": 1e17}, "uncovered_price: must be a number from 0 to 1000000"),
-        ({"uncovered_price": 3.0, "cover": 0.5}, "uncovered_price: goes without cover"),
     ],
     ids=str,
 )
@@ -212,15 +184,6 @@ def test_options_reach_the_solver() -> None:
     seen: list[tuple[int | None, int]] = []
     cellcolor.solve("hub_24", progress=lambda best, least: seen.append((best, least)))
     assert seen and seen[-1][0] == 15
-
-
-def test_a_start_is_a_solution_of_the_same_instance(tmp_path: Path) -> None:
-    first = cellcolor.solve("ring")
-    first.save(tmp_path / "s.json")
-    for start in (first, first.solution, tmp_path / "s.json", str(tmp_path / "s.json")):
-        assert cellcolor.solve("ring", start=start).segments == 2
-        with pytest.raises(InputError, match="is not valid"):
-            cellcolor.solve("split-cell", start=start)
 
 
 def test_check_finds_what_is_wrong() -> None:

@@ -9,30 +9,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import trimesh
 import yaml
-from hypothesis import given
-from hypothesis import strategies as st
-from hypothesis.extra.numpy import arrays
-from scipy.spatial.transform import Rotation
 from stand_in import stand_in
 
-from cellcolor.data.tool_paths import ToolPath
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import read_trajectory_csv
 from cellcolor.errors import InputError
 from cellcolor.exports.interface import PlannedMotion
 from cellcolor.exports.registry import EXPORTS
 
-FILLS = ("#77AADD", "#EE8866")
-
 
 @pytest.fixture(scope="module")
 def planned() -> PlannedMotion:
-    made = stand_in()
-    surface, segment_of = made.painted.surface, made.painted.segment_of.copy()
-    segment_of[-3:] = -1  # as where nothing is reached
-    return PlannedMotion(surface, segment_of, FILLS, made.paths, made.trajectory)
+    return PlannedMotion(stand_in().trajectory)
 
 
 def content(name: str, planned: PlannedMotion) -> bytes:
@@ -53,21 +42,6 @@ def test_the_table_of_joints_is_the_trajectory(planned: PlannedMotion) -> None:
     assert {row[2] for row in rows} == {"0", "1"}
 
 
-def test_poses_stand_on_the_surface_and_look_ahead(planned: PlannedMotion) -> None:
-    segments = yaml.safe_load(content("tool_paths.yaml", planned))
-    assert len(segments) == len(FILLS)
-    for number, paths in enumerate(segments):
-        own = [path for path in planned.paths.paths if path.segment == number]
-        assert len(paths) == len(own)
-        for poses, path in zip(paths, own, strict=True):
-            places = np.array([[pose[key] for key in "xyz"] for pose in poses])
-            turns = Rotation.from_quat([[pose[f"q{key}"] for key in "xyzw"] for pose in poses])
-            assert np.allclose(places, path.points, atol=1e-8)
-            assert np.allclose(turns.as_matrix()[:, :, 2], path.normals, atol=1e-7)
-            ahead = np.sum(turns.as_matrix()[:-1, :, 0] * np.diff(path.points, axis=0), axis=1)
-            assert (ahead > 0).all()
-
-
 def test_the_judge_reads_the_table_of_joints(planned: PlannedMotion, tmp_path: Path) -> None:
     (tmp_path / "joints.csv").write_bytes(content("joints.csv", planned))
     table, trajectory = read_trajectory_csv(tmp_path / "joints.csv"), planned.trajectory
@@ -75,28 +49,6 @@ def test_the_judge_reads_the_table_of_joints(planned: PlannedMotion, tmp_path: P
     assert np.allclose(table.times, trajectory.times, atol=1e-9)
     assert np.array_equal(table.contact, trajectory.contact)
     assert np.array_equal(table.segment, trajectory.segment)
-
-
-@given(
-    arrays(np.float64, (6, 3), elements=st.floats(-1, 1, width=16)),
-    arrays(np.float64, (6, 3), elements=st.floats(-1, 1, width=16)),
-)
-def test_any_path_has_proper_poses(points: np.ndarray, normals: np.ndarray) -> None:
-    """Points may coincide, and steps may go along the normal."""
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    normals = np.where(lengths > 0.1, normals / np.maximum(lengths, 0.1), [0.0, 0.0, 1.0])
-    path = ToolPath(0, 0, points, normals, [0] * 5)
-    made = stand_in()
-    paths = replace(made.paths, paths=(path,))
-    planned = PlannedMotion(
-        made.painted.surface, made.painted.segment_of, FILLS, paths, made.trajectory
-    )
-    ((poses,), empty) = yaml.safe_load(content("tool_paths.yaml", planned))
-    assert empty == []
-    quaternions = np.array([[pose[f"q{key}"] for key in "xyzw"] for pose in poses])
-    assert np.allclose(np.linalg.norm(quaternions, axis=1), 1, atol=1e-7)
-    axes = Rotation.from_quat(quaternions).as_matrix()[:, :, 2]
-    assert np.allclose(axes, normals, atol=1e-6)
 
 
 def test_a_message_ends_where_a_move_was_not_planned(planned: PlannedMotion) -> None:
@@ -139,21 +91,3 @@ def test_a_trajectory_without_samples_is_a_file_without_messages(planned: Planne
     made = Trajectory("empty", ("a",), [], np.empty((0, 1)), none, none, [], [])
     text = content("joint_trajectory.yaml", replace(planned, trajectory=made))
     assert list(yaml.safe_load_all(text)) == []
-
-
-@pytest.mark.parametrize("suffix", ["ply", "glb"])
-def test_meshes_have_the_colors_of_the_segments(suffix: str, planned: PlannedMotion) -> None:
-    data = io.BytesIO(content(f"painted.{suffix}", planned))
-    mesh = trimesh.load(data, file_type=suffix, process=False)
-    if suffix == "glb":
-        # As a viewer shows it, +y up: the scene's z is the height.
-        world = mesh.to_mesh().vertices
-        assert np.allclose(world[:, 1], planned.surface.vertices[:, 2], atol=1e-6)
-        mesh = next(iter(mesh.geometry.values()))
-    assert np.allclose(mesh.vertices, planned.surface.vertices, atol=1e-6)
-    assert np.array_equal(mesh.faces, planned.surface.faces)
-    colors = np.asarray(mesh.visual.vertex_colors)
-    for segment, fill in [(0, (0x77, 0xAA, 0xDD)), (1, (0xEE, 0x88, 0x66)), (-1, (0xDD,) * 3)]:
-        own = colors[planned.segment_of == segment]
-        assert len(own)
-        assert (own[:, :3] == fill).all()

@@ -129,16 +129,15 @@ class TestForeignFiles:
         assert mesh.read_text() == "solid part"
 
     def test_inputs(self, tmp_path: Path, capsys: Capture) -> None:
-        """Inputs are of the format to be written only when a solution is one."""
-        start = tmp_path / "start.json"
-        assert run("solve", RING, "-o", start) == 0
-        before = start.read_bytes()
+        """An input is not overwritten, whatever name it has."""
+        given = tmp_path / "given.json"
+        assert run("build", RING_SURFACE, "-o", given) == 0
+        before = given.read_bytes()
         link = tmp_path / "link.json"
-        link.symlink_to(start)
-        for output in (start, link):
-            arguments = ["solve", RING, "--warm-start", start, "-o", output]
-            refused(arguments, capsys, str(output), "is an input")
-        assert start.read_bytes() == before
+        link.symlink_to(given)
+        for output in (given, link):
+            refused(["export", given, "-o", output, "--format", "opb"], capsys, "is an input")
+        assert given.read_bytes() == before
         assert link.is_symlink()
 
     def test_surface_that_an_instance_names(self, tmp_path: Path, capsys: Capture) -> None:

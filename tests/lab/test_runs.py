@@ -15,16 +15,10 @@ from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError
 from cellcolor.lab.runs.row import Row, compared, disagreements
 from cellcolor.lab.runs.statistics import (
-    cactus,
     common,
     contestants_of,
-    growth,
     median_seconds,
     par2,
-    plots_of,
-    profile,
-    ratios,
-    scatter,
     strongest,
 )
 from cellcolor.lab.runs.summary import summary_of_runs
@@ -97,15 +91,6 @@ class TestStatistics:
         assert median_seconds(times("x", 1.0, 3.0, None)) == 3.0
         assert median_seconds(times("x", 1.0, None, None)) == math.inf
 
-    def test_ratios(self) -> None:
-        """On 0 a is twice as quick, on 1 b three times, on 2 only a is done, on 3 nobody."""
-        rows = times("a", 1.0, 6.0, 5.0, None) + times("b", 2.0, 2.0, None, None)
-        inf = math.inf
-        assert ratios(rows) == {"a": [1.0, 1.0, 3.0, inf], "b": [1.0, 2.0, inf, inf]}
-
-    def test_milliseconds_are_not_told_apart(self) -> None:
-        assert ratios(times("a", 0.001) + times("b", 0.009)) == {"a": [1.0], "b": [1.0]}
-
     def test_contestants(self) -> None:
         rows = [*times("b", 1.0), *times("cp-sat", 1.0), replace(times("b", 1.0)[0], workers=2)]
         assert contestants_of(rows) == ["cp-sat", "b", "b@2"]
@@ -120,36 +105,6 @@ class TestStatistics:
     def test_only_what_all_have_tried_is_compared(self) -> None:
         rows = times("a", 1.0, 2.0, 3.0) + times("b", 1.0, 2.0)
         assert {row.sha256 for row in common(rows)} == {f"{n:064}" for n in (0, 1)}
-
-
-class TestPlots:
-    def test_cactus(self) -> None:
-        (curve,) = cactus(times("a", 3.0, 1.0, None)).curves
-        assert (curve.label, curve.points) == ("a (2)", ((1.0, 1.0), (2.0, 3.0)))
-
-    def test_growth(self) -> None:
-        """Sizes 3 and 4 are one bin, 5 to 8 the next, in which half of the runs prove nothing."""
-        rows = times("a", 1.0, 2.0, 4.0, None, cells=(3, 4, 7, 8))
-        (curve,) = growth(rows, lambda row: row.cells, "cells").curves
-        assert curve.points == ((3.5, 1.5),)
-
-    def test_profile(self) -> None:
-        """The curves start at 0 and go on to the largest ratio of all, here 3."""
-        rows = times("a", 1.0, 6.0, 5.0, None) + times("b", 2.0, 2.0, None, None)
-        a, b = profile(rows).curves
-        assert a.points == ((1.0, 0.0), (1.0, 0.25), (1.0, 0.5), (3.0, 0.75), (3.0, 0.75))
-        assert b.points == ((1.0, 0.0), (1.0, 0.25), (2.0, 0.5), (3.0, 0.5))
-
-    def test_scatter(self) -> None:
-        plot = scatter(times("a", 3.0, None) + times("b", 1.0, 2.0), "a", "b")
-        assert plot.curves[0].points == ((3.0, 1.0), (20.0, 2.0))
-
-    def test_each_limit_has_plots_of_its_own(self) -> None:
-        rows = times("cp-sat", 1.0) + times("b", 1.0)
-        names = {"cactus", "growth-cells", "growth-darts", "profile", "scatter"}
-        assert set(plots_of(rows)) == names
-        both = rows + [replace(row, limit=20.0) for row in rows]
-        assert set(plots_of(both)) == {f"{n}-paper-{s}s" for n in names for s in (10, 20)}
 
 
 class TestAgreement:

@@ -13,23 +13,25 @@ from typing import Any
 import odd_jobs
 import pytest
 
-from cellcolor.lab.workers import LocalWorkers, Task, as_they_end
-from cellcolor.processes import Ended, Limits, run_alone, watch
+from cellcolor.lab.workers import Task, Workers, as_they_end
+from cellcolor.processes import Ended, run_alone
 
 pytestmark = pytest.mark.second
 
-LIMITS = Limits(60.0)
+LONG = 60.0
 
 
-def alone(function: Callable[..., Any], *arguments: Any, limits: Limits = LIMITS) -> Ended:
-    return run_alone(function, arguments, limits)
+def alone(
+    function: Callable[..., Any], *arguments: Any, limits: tuple[float, ...] = (LONG,)
+) -> Ended:
+    return run_alone(function, arguments, *limits)
 
 
 class TestOneProcess:
     def test_comes_back(self) -> None:
         ended = alone(odd_jobs.double, 21)
         assert (ended.end, ended.value, ended.error) == ("done", 42, "")
-        assert ended.seconds > 0 and ended.cpu_seconds > 0 and ended.machine.cores >= 1
+        assert ended.seconds > 0 and ended.cpu_seconds > 0
 
     def test_an_error_is_a_line(self) -> None:
         ended = alone(odd_jobs.fail, "two\nlines")
@@ -49,7 +51,7 @@ class TestOneProcess:
 
     @pytest.mark.skipif(sys.platform != "linux", reason="memory is looked at on Linux only")
     def test_memory(self) -> None:
-        ended = alone(odd_jobs.swell, limits=Limits(60.0, 200.0))
+        ended = alone(odd_jobs.swell, limits=(LONG, 200.0))
         assert (ended.end, ended.error) == ("memory", "killed at more than 200 MB")
         assert 200 < ended.peak_mb < 1000
 
@@ -61,24 +63,21 @@ class TestOneProcess:
     @pytest.mark.parametrize("apart", [False, True])
     def test_time_and_no_orphans(self, tmp_path: Path, apart: bool) -> None:
         pids = tmp_path / "pids"
-        ended = alone(odd_jobs.hang, str(pids), apart, limits=Limits(2.0))
+        ended = alone(odd_jobs.hang, str(pids), apart, limits=(2.0,))
         assert (ended.end, ended.error) == ("timeout", "killed after 2 s")
         assert ended.seconds >= 2.0
         odd_jobs.wait_until_ended(pids)
 
     def test_children_do_not_outlive_what_came_back(self, tmp_path: Path) -> None:
         pids = tmp_path / "pids"
-        command = [sys.executable, "-c", "import time; time.sleep(600)"]
-        script = "import subprocess, sys; p = subprocess.Popen(sys.argv[2:]); "
-        script += "open(sys.argv[1], 'w').write(str(p.pid))"
-        assert watch([sys.executable, "-c", script, str(pids), *command], LIMITS).end == "done"
+        assert alone(odd_jobs.leave_behind, str(pids)).end == "done"
         odd_jobs.wait_until_ended(pids)
 
 
 class TestManyProcesses:
     def test_each_comes_back_with_its_name(self) -> None:
-        tasks = [(number, Task(odd_jobs.double, (number,), LIMITS)) for number in range(4)]
-        with LocalWorkers(2) as workers:
+        tasks = [(number, Task(odd_jobs.double, (number,), LONG)) for number in range(4)]
+        with Workers(2) as workers:
             found = {name: ended.value for name, ended in as_they_end(workers, tasks)}
         assert found == {number: 2 * number for number in range(4)}
 
@@ -88,24 +87,24 @@ class TestManyProcesses:
         def make() -> Any:
             for number in range(3):
                 made.append(number)
-                yield number, Task(odd_jobs.double, (number,), LIMITS)
+                yield number, Task(odd_jobs.double, (number,), LONG)
 
-        with LocalWorkers(1) as workers:
+        with Workers(1) as workers:
             for number, _ in as_they_end(workers, make()):
                 assert made == list(range(number + 1))
 
     def test_lost_ones_leave_the_others(self) -> None:
         jobs = [(odd_jobs.die, ()), (odd_jobs.double, (1,)), (odd_jobs.fail, ("!",))]
-        tasks = [(n, Task(function, arguments, LIMITS)) for n, (function, arguments) in
+        tasks = [(n, Task(function, arguments, LONG)) for n, (function, arguments) in
                  enumerate(jobs)]  # fmt: skip
-        with LocalWorkers(1) as workers:
+        with Workers(1) as workers:
             ends = [(name, ended.end) for name, ended in as_they_end(workers, tasks)]
         assert ends == [(0, "crashed"), (1, "done"), (2, "failed")]
 
     def test_leaving_ends_the_work(self, tmp_path: Path) -> None:
         pids = tmp_path / "pids"
-        with pytest.raises(KeyboardInterrupt), LocalWorkers(1) as workers:
-            workers.submit(Task(odd_jobs.hang, (str(pids),), Limits(600.0)))
+        with pytest.raises(KeyboardInterrupt), Workers(1) as workers:
+            workers.submit(Task(odd_jobs.hang, (str(pids),), 600.0))
             odd_jobs.wait_until_noted(pids, 2)
             raise KeyboardInterrupt
         odd_jobs.wait_until_ended(pids)
@@ -116,11 +115,9 @@ class TestManyProcesses:
         script = (
             "import odd_jobs, signal, sys\n"
             "signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # if it was ignored
-            "from cellcolor.processes import Limits\n"
-            "from cellcolor.lab.workers import LocalWorkers\n"
-            "from cellcolor.lab.workers import Task, as_they_end\n"
-            "task = Task(odd_jobs.hang, (sys.argv[1],), Limits(600.0))\n"
-            "with LocalWorkers(1) as workers:\n"
+            "from cellcolor.lab.workers import Task, Workers, as_they_end\n"
+            "task = Task(odd_jobs.hang, (sys.argv[1],), 600.0)\n"
+            "with Workers(1) as workers:\n"
             "    list(as_they_end(workers, [(0, task)]))\n"
         )
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}

@@ -69,7 +69,6 @@ def test_a_solved_scene_is_painted_as_proved(name: str) -> None:
     assert_whole(built.surface, found.painted, solution)
     assert reaches(built.prepared, found)
     borders = found.painted.borders
-    assert borders.tool_radius_m == scene.setup.motion.tool_radius_m
     assert borders.after.cost < borders.before.cost
     assert told == ["painting", "moving borders"]
 

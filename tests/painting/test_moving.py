@@ -1,10 +1,9 @@
-"""Borders that are moved: segments stay whole, corridors get wide, borders cheap and short."""
+"""Borders that are moved: segments stay whole, borders get cheap and short."""
 
 from __future__ import annotations
 
 import math
 import random
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -114,44 +113,6 @@ def test_a_border_goes_where_colors_cost_the_same() -> None:
     assert (abs(border - 10.5) <= 1).all()
 
 
-def test_a_corridor_becomes_as_wide_as_the_tool() -> None:
-    """Two fields of segment 0, joined by one row of vertices through segment 1."""
-    rows = [[0] * 8 + [1] * 12 + [0] * 8 for _ in range(15)]
-    rows[7] = [0] * 28
-    upper = [
-        [2 if y > 7 and number == 1 else number for number in row] for y, row in enumerate(rows)
-    ]
-    drawn = grid(28, 15, upper)
-    for radius, narrow in ((2.0, 0), (3.0, 0)):
-        moved = move_borders(drawn, radius)
-        before, after = moved.borders.before, moved.borders.after
-        assert before.narrow == 1 and before.narrowest.width_m == pytest.approx(1.0)
-        assert before.narrowest.segment == 0 and before.narrowest.place[1] == 7
-        assert after.narrow == narrow
-        # Counted here: rows of segment 0 in each column between the fields.
-        across = (moved.segment_of.reshape(15, 28) == 0).sum(axis=0)[8:20]
-        assert across.min() >= 2 * radius
-
-
-def test_a_corridor_that_cannot_be_wider_is_told_with_its_place() -> None:
-    """As before, but no other color than their own reaches what is beside the corridor."""
-    rows = [[0] * 8 + [1] * 12 + [0] * 8 for _ in range(15)]
-    rows[7] = [0] * 28
-    upper = [
-        [2 if y > 7 and number == 1 else number for number in row] for y, row in enumerate(rows)
-    ]
-    drawn = grid(28, 15, upper)
-    colors = tuple((number,) for number in drawn.segment_of.tolist())
-    fixed = replace(drawn, surface=replace(drawn.surface, vertex_colors=colors))
-    moved = move_borders(fixed, 2.0)
-    report = moved.borders
-    assert report.moved == 0 and report.after == report.before
-    assert report.after.narrow == 1 and not report.stays_inside
-    assert 8 <= report.after.narrowest.place[0] <= 19
-    # The center runs along 12 columns and sees 2 m of others above, 2 m below: rows at 1 m, 2 m.
-    assert report.after.repeated_m2 == pytest.approx(12 * 4)
-
-
 def test_a_crack_holds_a_segment_together_as_it_is() -> None:
     """Beside a crack of its color a segment hangs together round the crack's end only."""
     columns, rows = 9, 7
@@ -188,7 +149,3 @@ def test_painting_from_outside_moves_borders() -> None:
     surface = blobs(4)
     painted = cellcolor.paint(surface, cellcolor.solve(surface, search_space="surface"))
     assert painted.borders.after.length_m < painted.borders.before.length_m
-    wide = cellcolor.paint(
-        surface, cellcolor.solve(surface, search_space="surface"), tool_radius_m=2.0
-    )
-    assert wide.borders.tool_radius_m == 2.0

@@ -28,9 +28,6 @@ def test_unknown_names_list_what_there_is() -> None:
     [
         (["cells"], []),
         (["color", "--color", "1"], ["--color", "1"]),
-        (["graph"], ["--graph"]),
-        (["reasons"], ["--reason"]),
-        (["reasons", "--branch", "1"], ["--reason", "--branch", "1"]),
     ],
     ids=lambda value: " ".join(value) or "none",
 )
@@ -61,7 +58,6 @@ def test_segments_by_name(tmp_path: Path) -> None:
         (["--view", "segments"], "solution: the picture segments needs it"),
         (["--view", "cells", "--color", "1"], "color: the picture cells does not take it"),
         (["--view", "cells", "--branch", "1"], "branch: the picture cells does not take it"),
-        (["--view", "cells", "--graph"], "--view cannot be combined with --reason and --graph"),
     ],
     ids=lambda value: " ".join(value[1:]) if isinstance(value, list) else "",
 )

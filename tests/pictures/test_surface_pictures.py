@@ -283,7 +283,7 @@ class TestSolution:
 class TestReasons:
     def test_of_a_side_file(self, tmp_path: Path) -> None:
         path, arrays = side_file(tmp_path)
-        show(path, "--reason", "-o", tmp_path / "x.html")
+        show(path, "--view", "reasons", "-o", tmp_path / "x.html")
         found = areas(tmp_path / "x.html")
         valid = {v for v, row in enumerate(arrays["node_color"]) if (row >= 0).any()}
         assert found == {
@@ -295,7 +295,7 @@ class TestReasons:
     @pytest.mark.parametrize("branch", ["right arm", "1"])
     def test_of_one_branch(self, branch: str, tmp_path: Path) -> None:
         path, arrays = side_file(tmp_path)
-        show(path, "--reason", "--branch", branch, "-o", tmp_path / "x.html")
+        show(path, "--view", "reasons", "--branch", branch, "-o", tmp_path / "x.html")
         found = areas(tmp_path / "x.html")
         codes = arrays["reasons"][:, 1]
         names = {"valid": 0, "torque": 2, "ground": 3}
@@ -307,7 +307,7 @@ class TestReasons:
         from cellcolor.frontend import build_surface
 
         scene = small_wok(tmp_path)
-        show(scene, "--reason", "--branch", "0", "-o", tmp_path / "x.html")
+        show(scene, "--view", "reasons", "--branch", "0", "-o", tmp_path / "x.html")
         result = build_surface(scene)
         found = areas(tmp_path / "x.html")
         taken = result.node_color[:, 0] < 0

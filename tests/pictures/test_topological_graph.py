@@ -54,15 +54,15 @@ class TestGraph:
         """It needs no script, and what is written in it stays text."""
         instance = replace(Instance.read(PAPER / "ring.json"), colors=("<b>", "blue", "green"))
         (tmp_path / "ring.json").write_text(instance.to_json())
-        show(tmp_path / "ring.json", "--graph", "-o", tmp_path / "x.html")
+        show(tmp_path / "ring.json", "--view", "graph", "-o", tmp_path / "x.html")
         page = (tmp_path / "x.html").read_text(encoding="utf-8")
         assert page.count("<svg") == 1 and "class View" not in page
         assert "0: &lt;b&gt;</span>" in page and "<b>" not in page
 
     def test_a_surface_and_a_graph_without_cells(self, tmp_path: Path) -> None:
-        show(saved(DRAWN, tmp_path), "--graph", "-o", tmp_path / "x.svg")
+        show(saved(DRAWN, tmp_path), "--view", "graph", "-o", tmp_path / "x.svg")
         assert "drawn: 4 cells" in (tmp_path / "x.svg").read_text()
         empty = tmp_path / "empty.json"
         empty.write_text(Instance("empty", (), (), ()).to_json())
-        show(empty, "--graph", "-o", tmp_path / "empty.png")
+        show(empty, "--view", "graph", "-o", tmp_path / "empty.png")
         assert (tmp_path / "empty.png").stat().st_size > 0

@@ -271,7 +271,7 @@ def test_the_part_is_to_be_moved_where_nothing_else_helps(
 
 @pytest.fixture(scope="module")
 def tilted() -> Explanation:
-    return cellcolor.explain(shipped("hemisphere_tilted", 120), at=(0.4, 0.0, 0.2))
+    return cellcolor.explain(shipped("hemisphere_tilted", 120))
 
 
 def test_numbers_and_areas_are_those_of_the_changed_scene(tilted: Explanation) -> None:
@@ -359,45 +359,19 @@ def test_an_obstacle_farther_away() -> None:
     assert found.segments == row.segments
 
 
-def test_a_vertex_is_told_what_each_branch_fails(tilted: Explanation) -> None:
-    built = cellcolor.build(shipped("hemisphere_tilted", 120))
-    vertices = built.surface.vertices
-    vertex = int(np.argmin(np.linalg.norm(vertices - [0.4, 0.0, 0.2], axis=1)))
-    assert [row.branch for row in tilted.here] == list(built.branches)
-    for row, code, color in zip(
-        tilted.here, built.reasons[vertex], built.node_color[vertex], strict=True
-    ):
-        first = built.reason_names[code]
-        assert row.color == (None if color < 0 else built.surface.colors[color])
-        if first not in ("valid", "no solution"):
-            assert first == row.fails[0]  # tests are told in their order
-        if color >= 0 and row.ends_m is not None:
-            without_it = [own for own in range(len(vertices)) if built.node_color[own].max() >= -1]
-            others = [v for v in without_it if color not in built.surface.vertex_colors[v]]
-            away = np.linalg.norm(vertices[others] - vertices[vertex], axis=1)
-            assert row.ends_m == pytest.approx(away.min())
-
-
 def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "wok.toml"
     text = (SCENES / "wok_obstacle.toml").read_text()
     setup = (SCENES.parents[1] / "models" / "robots" / "ur5_polishing.toml").as_posix()
     text = text.replace("../../models/robots/ur5_polishing.toml", setup)
     file.write_text(text.replace("target_vertices = 1000", "target_vertices = 200"))
-    assert run("explain", file, "--json", "--at", "0.4,0,0") == 0
+    assert run("explain", file, "--json") == 0
     rows = json_lines(capsys.readouterr().out)
     assert rows[0]["relaxed"] == [] and rows[1]["relaxed"] == ["obstacle 1 (cylinder)"]
     assert rows[1]["lift_offs"] < rows[0]["lift_offs"]
     asked = {"relaxed", "lift_offs", "covered_share", "surface_share", "proved_for_surface"}
     assert all(asked <= row.keys() for row in rows)
-    branches = [row for row in rows if "branch" in row]
-    assert all("fails" in row and row["lift_offs"] == rows[0]["lift_offs"] for row in branches)
-    assert len(branches) == 8
     for wrong, said in (
-        ((file, "--at", "1,2"), "'--at': a point is three numbers"),
-        ((file, "--at", "1,2,x"), "'--at': a point is three numbers"),
-        ((file, "--at", "1,2,nan"), "at: must be three numbers"),
-        ((file, "--at", "9,0,0"), "at: is 8.3"),
         ((tmp_path / "none.toml",), "No such file"),
         ((SCENES.parent / "index.json",), "is no scene"),
     ):

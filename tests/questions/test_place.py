@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,6 @@ from shipped import SCENES, shipped
 
 import cellcolor
 from cellcolor.deadline import NEVER
-from cellcolor.door.placing import save_map
 from cellcolor.frontend import Scene
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.lab.workers import Task, Workers
@@ -25,7 +23,6 @@ from cellcolor.processes import Ended
 from cellcolor.questions.placements import (
     VARIABLES,
     PlacedMinimum,
-    PlacementMap,
     Placements,
     Pose,
 )
@@ -60,14 +57,8 @@ def fewer_boxes() -> Iterator[None]:
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where the table of the search is that most tests are about."""
-    return tmp_path_factory.mktemp("searched") / "placements.csv"
-
-
-@pytest.fixture(scope="module")
-def found(written: Path) -> Placements:
-    return place(table=written)
+def found() -> Placements:
+    return place()
 
 
 def at(scene: Scene, pose: Pose) -> Scene:
@@ -201,7 +192,11 @@ def test_a_part_does_not_stand_in_the_ground_or_in_an_obstacle() -> None:
         (0.465, -0.15, -0.04, 0.0, 0.0, 0.0),
     ]
     rows = minima_at(scene, poses, np.inf, 1, 0)
-    assert [row.refused for row in rows] == ["stands in the ground", "stands in obstacle 1", ""]
+    assert [row.refused for row in rows] == [
+        "it would stand in the ground",
+        "it would stand in obstacle 1",
+        "",
+    ]
 
 
 def test_where_the_scene_has_it_in_the_base_the_share_has_to_be_said() -> None:
@@ -254,49 +249,6 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     return asked
 
 
-def test_a_search_goes_on_where_it_was_stopped(
-    found: Placements, written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    table = tmp_path / "placements.csv"
-    lines = written.read_bytes().splitlines(keepends=True)
-    rows = [row for row in found if not row.at_least]
-    assert len(lines) == 1 + len({(row.vertices, row.pose) for row in rows})
-    table.write_bytes(b"".join(lines))
-    asked = counted(monkeypatch)
-    assert list(place(table=table)) == list(found)
-    assert sum(asked) == 0 and table.read_bytes() == b"".join(lines)
-    # It was stopped within a line, with a coarse placement and the proofs still to come.
-    table.write_bytes(b"".join(lines[:-6]) + lines[-6][:10])
-    assert list(place(table=table)) == list(found)
-    assert 0 < sum(asked) <= 6 and len(table.read_bytes().splitlines()) <= len(lines)
-
-
-@pytest.mark.usefixtures("found")
-def test_a_table_that_cannot_be_gone_on_from_is_refused(written: Path, tmp_path: Path) -> None:
-    table = tmp_path / "placements.csv"
-    whole = written.read_text()
-    lines = whole.splitlines(keepends=True)
-    own = shipped("wok_obstacle", 80)
-    other = own.varied(ground={"height_m": -0.5})
-    for text, scene, said in (
-        (whole, other, "placements.csv: line 2: is a placement of another scene"),
-        (whole, own.moved(position_m=(0.5, 0.0, 0.0)), ""),  # the placement is what is searched
-        (whole.replace("x,y,z", "a,b,c"), own, "placements.csv: line 1: is not the header"),
-        (lines[0] + "nothing\n", own, "placements.csv: line 2: has 1 cells"),
-        ("".join(lines[:-1]) + lines[-1].replace(",true,", ",perhaps,"), own, f"line {len(lines)}"),
-        ("mine\n", own, "placements.csv: line 1"),
-    ):
-        table.write_text(text)
-        given: dict[str, Any] = {**RANGES, "points": 1, "best": 1, "vertices": 50, "cover": 0.5}
-        if not said:
-            assert cellcolor.place(scene, **given, table=table).best
-            continue
-        with pytest.raises(cellcolor.InputError) as caught:
-            cellcolor.place(scene, **given, table=table)
-        assert said in str(caught.value) and "\n" not in str(caught.value)
-        assert table.read_text() == text
-
-
 def test_how_far_a_placement_may_be_off(monkeypatch: pytest.MonkeyPatch) -> None:
     """Against the samples, each built and solved again, nearest first."""
     monkeypatch.setattr("cellcolor.questions.searching_places._BESIDE", 6)
@@ -320,6 +272,21 @@ def test_how_far_a_placement_may_be_off(monkeypatch: pytest.MonkeyPatch) -> None
     assert str(row.leeway) in str(found)
 
 
+def test_why_the_part_cannot_stand_somewhere_is_said() -> None:
+    """Counted by hand: two in the ground, one in an obstacle."""
+    stands = PlacedMinimum((0.4, 0, 0, 0, 0, 0), 2, 0.9, True, 80)
+    no = [
+        PlacedMinimum((x, 0, 0, 0, 0, 0), None, 0.0, False, 0, f"it would stand in {what}")
+        for x, what in enumerate(("the ground", "obstacle 1", "the ground"))
+    ]
+    text = str(Placements("part", 0.9, no[0], (stands,), tuple(no)))
+    assert "(0, 0, 0) m: the part cannot stand there: it would stand in the ground" in text
+    assert text.endswith(
+        "  in 3 of them the part cannot stand: it would stand in the ground (2); "
+        "it would stand in obstacle 1 (1)"
+    )
+
+
 @examples(50)
 @given(
     pose=st.tuples(*6 * [st.floats(-1, 1)]), up_to=st.floats(1e-4, 0.05), count=st.integers(1, 20)
@@ -335,50 +302,6 @@ def test_displacements_are_as_far_as_they_say(pose: Pose, up_to: float, count: i
         off = np.linalg.norm(there - start, axis=1).max()
         assert off == pytest.approx(said, abs=1e-9)
         assert off == pytest.approx(up_to * number / count, rel=1e-3)
-
-
-def test_a_map_has_the_middles_of_its_tiles(tmp_path: Path) -> None:
-    found = place(tiles=2, best=1)
-    assert found.map is not None and found.map.tiles == 2
-    middles = [(0.375, -0.2), (0.525, -0.2), (0.375, 0.0), (0.525, 0.0)]
-    coarse = coarse_scene(shipped("wok_obstacle", 80), 50, NEVER)
-    for row, place_ in zip(found.map.rows, middles, strict=True):
-        assert row is not None and row.pose[:2] == pytest.approx(place_)
-        assert row.pose[2:] == found.here.pose[2:]
-    assert found.map.cover == found.tried[0].covered_share
-    known = zip(found.map.rows, found.map.lift_offs(), found.map.percents(), strict=True)
-    for row, least, most in known:
-        assert row is not None
-        segments, share, _ = by_hand(at(coarse, row.pose))
-        assert 100 * share <= most + 1e-6
-        if row.segments is not None:
-            assert row.segments == segments == least + 1
-        elif share >= found.map.cover:
-            assert segments is not None and least <= segments - 1
-        else:
-            assert np.isnan(least) or most >= 100 * found.map.cover
-    assert set(found.map.rows) <= set(found.tried)
-    for suffix in ("png", "svg"):
-        save_map(found, tmp_path / f"map.{suffix}")
-    assert "lift-offs" in (tmp_path / "map.svg").read_text()
-    with pytest.raises(cellcolor.InputError, match=r"must end in .png or .svg"):
-        save_map(found, tmp_path / "map.html")
-    with pytest.raises(cellcolor.InputError, match="a map needs one or two ranges"):
-        place(tiles=2, z=(-0.1, 0.1))
-
-
-def test_a_map_over_one_variable_is_two_curves(tmp_path: Path) -> None:
-    rows = tuple(
-        PlacedMinimum((0, 0, 0, 0, 0, yaw), n, 0.5, n is not None, 9)
-        for yaw, n in ((-0.5, 2), (0.5, None))
-    )
-    found = Placements(
-        "yaw", 0.5, rows[0], rows[:1], rows, map=PlacementMap({"yaw": (-1, 1)}, 2, rows)
-    )
-    save_map(found, tmp_path / "map.svg")
-    assert "yaw, rad" in (tmp_path / "map.svg").read_text()
-    with pytest.raises(cellcolor.InputError, match="no map was asked for"):
-        save_map(replace(found, map=None), tmp_path / "map.svg")
 
 
 @examples(50)
@@ -436,7 +359,6 @@ def test_the_rank_is_what_is_asked_for(rows: list[tuple[int | None, float]], cov
         ({"x": 0.5}, "x"),
         ({"x": ("a", "b")}, "x"),
         ({"leeway": -1.0}, "leeway"),
-        ({"tiles": 0}, "tiles"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(changes: dict[str, Any], field: str | None) -> None:
@@ -467,10 +389,8 @@ def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[s
     text = text.replace("../../models/robots/ur5_polishing.toml", setup)
     file.write_text(text.replace("target_vertices = 1000", "target_vertices = 80"))
     options = ("--x", "0.4,0.5", "--points", "1", "--vertices", "50", "--best", "1")
-    extra = ("--map", tmp_path / "map.png", "--tiles", "1", "-o", tmp_path / "placements.csv")
-    assert run("place", file, *options, *extra, "--json") == 0
+    assert run("place", file, *options, "--json") == 0
     rows = json_lines(capsys.readouterr().out)
-    assert (tmp_path / "map.png").is_file() and (tmp_path / "placements.csv").is_file()
     assert rows[0]["position_m"] == [0.465, -0.15, -0.04] and rows[0]["rpy_rad"] == [0, 0, 0]
     assert {"lift_offs", "covered_share", "proved_for_surface"} <= rows[1].keys()
     assert all(0.4 <= row["position_m"][0] <= 0.5 for row in rows)

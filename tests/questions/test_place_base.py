@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,6 @@ from shipped import SCENES, shipped
 
 import cellcolor
 from cellcolor.frontend.parts.placement import Placement
-from cellcolor.questions.placements import PlacedMinimum
 from cellcolor.questions.placing import minima_at
 from examples import examples
 
@@ -109,40 +107,19 @@ def test_what_is_bound_to_the_world_is_named(scene: Any, field: str) -> None:
     assert field in str(caught.value)
 
 
-@examples(50)
-@given(
-    rows=st.lists(st.tuples(st.integers(1, 5), st.integers(0, 100)), min_size=1, max_size=8),
-    price=st.floats(0.5, 100),
-)
-def test_with_a_price_the_sum_is_least(rows: list[tuple[int, int]], price: float) -> None:
-    values = [PlacedMinimum(NO_POSE, n, share / 100, True, 1) for n, share in rows]
-    best = min(values, key=lambda row: row.rank(0.0, price))
-    sums = [n - 1 + price * (1 - share / 100) for n, share in rows]
-    assert best.lift_offs is not None
-    assert best.lift_offs + price * (1 - best.covered_share) == pytest.approx(min(sums))
-
-
 @pytest.mark.second
 def test_the_command_moves_the_base(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("cellcolor.questions.searching_places._CLOSER", (0.3,))
     wok = SCENES / "wok_obstacle.toml"
-    asked = ("--points", "1", "--vertices", "50", "--best", "1", "--uncovered-price", "20")
-    table = tmp_path / "places.csv"
-    assert run("place", wok, "--base", "--x", "0,0.1", *asked, "-o", table, "--json") == 0
+    asked = ("--points", "1", "--vertices", "50", "--best", "1")
+    assert run("place", wok, "--base", "--x", "0,0.1", *asked, "--json") == 0
     rows = json_lines(capsys.readouterr().out)
     assert all(row["moved"] == "base" for row in rows) and rows[0]["position_m"] == [0, 0, 0]
-    places = tmp_path / "places.jsonl"
-    places.write_text('{"moved": "base", "position_m": [0, 0, 0], "rpy_rad": [0, 0, 0]}\n')
     for wrong, said in (
-        (("place", wok, "--x", "0.4,0.5", "-o", table), "is a placement of another scene"),
         (("place", wok, "--base", "--roll", "0,1"), "roll: the arm's base stays upright"),
         (("place", wok, "--base", "--x", "0,1", "--leeway", "0.01"), "leeway"),
-        (("place", wok, "--x", "0,1", "--uncovered-price", "-1"), "uncovered-price"),
-        (("place", wok, "--x", "0,1", "--uncovered-price", "nan"), "'--uncovered-price'"),
-        (("place", wok, "--x", "0,1", "--uncovered-price", "1e7"), "range 0<=x<=1000000"),
-        (("setups", wok, "--places", places), "line 1: is a place of the arm's base"),
     ):
         assert run(*wrong) == 2
         assert said in capsys.readouterr().err

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import combinations
@@ -11,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from commands import json_lines, run
+from commands import run
 from exhaustive_minima import front_by_subsets, minimum
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -294,20 +293,12 @@ def test_what_cannot_be_set_up_is_refused_in_a_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     lines = tmp_path / "places.jsonl"
-    lines.write_text('{"position_m": [1, 2, 3], "rpy_rad": [0, 0, 0]}\n[]\n')
-    short, far, empty = (tmp_path / f"{name}.jsonl" for name in ("short", "far", "empty"))
-    short.write_text('{"position_m": [1, 2], "rpy_rad": [0, 0, 0]}\n')
-    far.write_text('{"position_m": [1, 2, 1e999], "rpy_rad": [0, 0, 0]}\n')
-    empty.write_text("")
+    lines.write_text("")
     for wrong, said in (
         (("--at", "1,2,3"), "'--at': a place is six numbers"),
         (("--at", "nan,0,0,0,0,0"), "at[0]: must be six numbers"),
         (("--at", "0.465,-0.15,-0.3,0,0,0"), "no set-up: the part stands in the ground"),
         (("--with", "half_pipe"), "half_pipe.toml: object: has"),
-        (("--places", lines), "places.jsonl: line 2"),
-        (("--places", short), "short.jsonl: line 1: must be an object with position_m"),
-        (("--places", far), "far.jsonl: line 1: must be an object with position_m"),
-        (("--places", empty), "empty.jsonl: has no place"),
         (("-o", tmp_path / "none" / "a.png"), "its folder does not exist"),
         (("--plan", lines), "places.jsonl: must be a folder"),
         (("--change-over", "0.5"), "'--change-over': 0.5 is not in the range 1<=x<=1000000"),
@@ -315,7 +306,6 @@ def test_what_cannot_be_set_up_is_refused_in_a_line(
         (("--change-over", "1e306"), "'--change-over': 1e+306 is not in the range 1<=x<=1000000"),
         (("--change-over", "nan"), "'--change-over': nan is not in the range 1<=x<=1000000"),
         (("--change-over", "1.0004"), "change_over: must have no more than three decimals"),
-        (("--places", tmp_path / "none"), "No such file"),
     ):
         assert run("setups", "wok_obstacle", *wrong) == 2
         printed = capsys.readouterr()
@@ -328,23 +318,6 @@ def test_what_cannot_be_set_up_is_refused_in_a_line(
             cellcolor.setups("wok_obstacle", change_over=price)
     with pytest.raises(cellcolor.InputError, match="change_over: must have no more than three"):
         choose([], 1.0, 1.0004, Options())
-
-
-def test_the_command_takes_what_place_prints(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    rows = [
-        {"position_m": TURNED[:3], "rpy_rad": TURNED[3:], "refused": ""},
-        {"position_m": (0, 0, 0), "rpy_rad": (0, 0, 0), "refused": "stands in a link"},
-    ]
-    lines = tmp_path / "places.jsonl"
-    lines.write_text("".join(json.dumps(row) + "\n" for row in rows))
-    assert run("setups", "wok_obstacle", "--places", lines, "--json") == 0
-    (row,) = json_lines(capsys.readouterr().out)
-    assert (row["lift_offs"], row["segments"], row["candidates"]) == (0, 2, 2)
-    assert (row["covered_share"], row["proved_for_surface"]) == (1.0, True)
-    assert [one["rpy_rad"] for one in row["setups"]] == [[0, 0, 0], list(TURNED[3:])]
-    assert row["alone"]["segments"] == 3
 
 
 def test_candidates_that_the_time_limit_left_unbuilt_are_said(

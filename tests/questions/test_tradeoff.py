@@ -1,5 +1,7 @@
 """Lift-offs against area: the front, against trying everything."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -36,15 +38,21 @@ def most(front: Front, segments: int) -> float:
     return max((p.covered_share for p in front if p.segments <= segments), default=0.0)
 
 
+def weighing(instance: Instance, areas: Sequence[float]) -> Instance:
+    """An instance whose cells have these areas."""
+    pairs = zip(instance.cells, areas, strict=True)
+    return replace(instance, cells=tuple(replace(cell, area=float(own)) for cell, own in pairs))
+
+
 @examples(15)
 @given(seed=SEEDS, cells=st.integers(1, 6), more=st.integers(0, 4), weights=WEIGHTS)
 def test_the_front_is_the_one_that_trying_every_set_of_cells_finds(
     seed: int, cells: int, more: int, weights: list[int]
 ) -> None:
-    instance = planar_graph(seed, cells, cells + more, 3)
-    own = weights[: len(instance.cells)]
+    own = weights[:cells]
     assume(sum(own) > 0)
-    front = front_of(instance, Options(), weights=own)
+    instance = weighing(planar_graph(seed, cells, cells + more, 3), own)
+    front = front_of(instance, Options())
     for segments, weight in front_by_subsets(instance, own).items():
         assert most(front, segments) * sum(own) == pytest.approx(weight)
 
@@ -61,7 +69,7 @@ def test_no_coloring_of_vertices_covers_more_than_a_point_says(
     inside = cell != OUTSIDE
     per_cell = np.bincount(cell[inside], own[inside], len(found.instance.cells))
     assume(per_cell.sum() > 0)
-    front = front_of(found.instance, Options(), weights=per_cell.tolist())
+    front = front_of(weighing(found.instance, per_cell.tolist()), Options())
     best = front_by_vertices(surface, own.tolist())
     for point in front:
         if point.holds_for_surface and point.segments in best:
@@ -69,56 +77,27 @@ def test_no_coloring_of_vertices_covers_more_than_a_point_says(
 
 
 @examples(10)
-@given(seed=st.integers(0, 500), price=st.floats(0, 3e5), share=st.floats(0, 1))
-def test_a_choice_is_the_best_of_all_sets_of_cells(seed: int, price: float, share: float) -> None:
+@given(seed=st.integers(0, 500), share=st.floats(0, 1))
+def test_a_choice_is_the_best_of_all_sets_of_cells(seed: int, share: float) -> None:
     instance = decomposition_of(blobs(seed, **WAVES)).instance
     assume(1 < len(instance.cells) <= 8)
     areas = [cell.area or 0.0 for cell in instance.cells]
     best = front_by_subsets(instance, areas)
-    front = front_of(instance, Options())
-    cost = min((k - 1) * price + 1e4 * (sum(areas) - area) for k, area in best.items())
-    cheapest, fewest = front.least_cost(price), front.fewest_for(share)
-    assert cheapest.cost_cm2 == pytest.approx(cost, rel=1e-6, abs=1e-6) and cheapest.proved
+    fewest = front_of(instance, Options()).fewest_for(share)
     enough = [k for k, area in best.items() if area >= share * sum(areas) * (1 - 1e-9)]
     assert fewest.point.segments == min(enough) and fewest.proved
 
 
 def test_nothing_is_proved_by_what_is_not_known() -> None:
-    """By hand: the bound says which cheaper division there might be."""
+    """By hand: the bound says whether fewer lift-offs might cover as much."""
     front = cellcolor.tradeoff(STRIP)
-    one, two, three = front.points
+    one, two, _ = front.points
     assert front.fewest_for(two.covered_share).proved_for_surface
     for unknown in ((), ((1.0, True),), ((one.at_most_share, False),)):
         vague = Front(front.instance, front.points, front.weight, unknown)
         assert not vague.fewest_for(two.covered_share).proved_for_surface
-        assert not vague.least_cost(1.0).proved_for_surface
-    assert front.least_cost(1.0).proved_for_surface
     paper = Front(front.instance, front.points, front.weight, ((one.at_most_share, False),))
     assert paper.fewest_for(two.covered_share).proved
-    assert front.least_cost(1e9).point is one and front.least_cost(1.0).point is three
-
-
-def test_a_high_price_proves_nothing_that_is_not_known() -> None:
-    """Two segments are needed, and might cover a part of 0.01 cm² whole: nobody knows.
-
-    What is compared is area, even beside lift-offs that cost as much as 1e9 cm².
-    """
-    front = cellcolor.tradeoff(STRIP)
-    unknown = ((-1.0, True), (1.0, True))
-    vague = Front(front.instance, front.points[1:2], 1e-6, unknown)
-    assert not vague.least_cost(1e9).proved
-    known = ((-1.0, True), (front.points[1].at_most_share, True))
-    assert Front(front.instance, front.points[1:2], 1e-6, known).least_cost(1e9).proved
-
-
-@pytest.mark.parametrize("price", [-1.0, 1e10, 1e17, 1e306, float("inf"), float("nan")])
-def test_prices_out_of_range_are_refused(price: float, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(cellcolor.InputError, match="price: must be a number from 0 to 1000000000"):
-        cellcolor.tradeoff(STRIP).least_cost(price)
-    assert run("tradeoff", "square", "--price", price) == 2
-    printed = capsys.readouterr()
-    (line,) = printed.err.splitlines()
-    assert "'--price'" in line and "is not in the range 0<=x<=1000000000" in line
 
 
 def test_cells_left_out_are_outside() -> None:
@@ -150,41 +129,22 @@ def test_the_largest_parts_come_first() -> None:
     expected = [share["B"] / whole, (share["A"] + share["B"]) / whole, 1.0]
     assert [point.covered_share for point in front] == pytest.approx(expected)
     assert front.proved_for_surface
-    assert front.at_least(expected[0]).lift_offs == 0
-    assert front.at_least(expected[0] + 0.01).lift_offs == 1
-    # A lift-off that costs more than C is worth is not made.
-    for worth, lift_offs in ((0.5, 1), (2.0, 2)):
-        price = worth / (1 - expected[1])
-        choice = front.cheapest(price)
-        assert choice.point.lift_offs == lift_offs and choice.proved_for_surface
-        solved = cellcolor.solve(STRIP, uncovered_price=price)
-        assert (solved.lift_offs, solved.covered_share) == (lift_offs, choice.point.covered_share)
-        assert f"covered with {choice}. The rest" in solved.solution.notes[0]
-    with pytest.raises(
-        cellcolor.InputError, match="uncovered_price: must be a number from 0 to 1000000"
-    ):
-        front.cheapest(-1.0)
+    assert front.fewest_for(expected[0]).point.lift_offs == 0
+    assert front.fewest_for(expected[0] + 0.01).point.lift_offs == 1
 
 
-def test_weights_and_places() -> None:
-    urgent = np.array([9.0 if own == (2,) else 1.0 for own in STRIP.vertex_colors])
-    first = cellcolor.tradeoff(STRIP, weights=urgent).points[0]
-    assert STRIP.vertex_colors[0] != (2,) and first.left_out == (0, 1)  # only C is covered
-    right = cellcolor.WorldBox((9.5, -9.0, -9.0), (99.0, 99.0, 9.0))
-    needed = cellcolor.tradeoff(STRIP, required=right)
-    # One segment covers what is required and nothing else; two take B as well.
-    assert [point.left_out for point in needed] == [(0, 1), (0,), ()]
+def test_what_is_left_alone_does_not_count() -> None:
+    right = cellcolor.WorldBox((9.5, -9.0, -9.0), (99.0, 99.0, 9.0))  # only C
     without = cellcolor.tradeoff(STRIP, left_alone=right)
     assert [point.lift_offs for point in without] == [0, 1]
     mask = [bool(own == (2,)) for own in STRIP.vertex_colors]
     assert str(cellcolor.tradeoff(STRIP, left_alone=mask)) == str(without)
-    # One segment cannot cover both ends, whatever a lift-off costs.
-    ends = [own != (1,) for own in STRIP.vertex_colors]
-    choice = cellcolor.tradeoff(STRIP, required=ends).least_cost(1e9)
-    assert choice.point.lift_offs == 1 and choice.proved_for_surface
-    # A lift-off more for what weighs nothing is no point of the front.
-    heavy = [float(own != (2,)) for own in STRIP.vertex_colors]
-    points = cellcolor.tradeoff(STRIP, weights=heavy).points
+
+
+def test_a_lift_off_more_for_what_weighs_nothing_is_no_point_of_the_front() -> None:
+    instance = cellcolor.decompose(STRIP)
+    nothing = [0.0 if cell.colors == (2,) else 1.0 for cell in instance.cells]
+    points = front_of(weighing(instance, nothing), Options()).points
     assert [len(point.left_out) for point in points] == [2, 1]
     assert points[-1].covered_share == 1
 
@@ -203,14 +163,9 @@ def test_two_regions_may_need_four_segments() -> None:
 @pytest.mark.parametrize(
     ("given", "field"),
     [
-        ({"weights": [1.0]}, "weights"),
-        ({"weights": [-1.0] * 24}, "weights[0]"),
-        ({"weights": [float("nan")] * 24}, "weights[0]"),
-        ({"weights": [0.0] * 24}, "weights"),
-        ({"required": [True] * 23}, "required"),
+        ({"left_alone": [True] * 23}, "left_alone"),
         ({"left_alone": [1] * 24}, "left_alone"),
         ({"left_alone": cellcolor.WorldBox((99, 0, 0), (100, 1, 1))}, "left_alone"),
-        ({"required": [True] + [False] * 23, "left_alone": [True] + [False] * 23}, "required"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(given: dict[str, Any], field: str) -> None:
@@ -235,11 +190,6 @@ def test_the_command_prints_a_row_for_each_point(
     assert [row["covered_share"] for row in rows] == [p.covered_share for p in front]
     assert [row["lift_offs"] for row in rows] == [0, 1, 2]
     assert all(row["proved_for_surface"] is True for row in rows)
-    assert run("tradeoff", file, "--price", "1e6", "--json") == 0
-    (row,) = json_lines(capsys.readouterr().out)
-    left_out = 1e4 * STRIP.vertex_areas.sum() * (1 - front.points[0].covered_share)
-    assert (row["lift_offs"], row["proved_for_surface"]) == (0, True)
-    assert row["cost_cm2"] == pytest.approx(left_out)
     assert run("tradeoff", file, "--share", "0.5") == 0
     assert capsys.readouterr().out.startswith("0 lift-offs: 5")
     picture = tmp_path / "front.svg"
@@ -248,18 +198,12 @@ def test_the_command_prints_a_row_for_each_point(
     assert all(f"{100 * row['covered_share']:.1f}" in drawn_text for row in rows)
     mask = tmp_path / "mask.json"
     mask.write_text('{"mask": [true]}')
-    weights = tmp_path / "weights.json"
-    weights.write_text('{"weights": [1, -1]}')
     for wrong, said in (
-        (("--required", mask), "of another mesh"),
+        (("--left-alone", mask), "of another mesh"),
         (("--left-alone", "1,2,3,0,0,0"), "the box is empty"),
-        (("--price", "nan"), "price"),
-        (("--price", "-1"), "price"),
-        (("--price", "1", "--share", "1"), "two questions"),
+        (("--share", "nan"), "share"),
         (("-o", file), "must end in .png or .svg"),
-        (("--weights", mask), "mask.json: weights: must be a list"),
-        (("--weights", weights), "weights.json: weights[1]: must be a number from 0 on, is -1"),
-        (("--required", tmp_path / "none.json"), "No such file"),
+        (("--left-alone", tmp_path / "none.json"), "No such file"),
     ):
         assert run("tradeoff", file, *wrong) == 2
         assert said in capsys.readouterr().err

@@ -112,7 +112,6 @@ class TestAbilities:
     ("arguments", "message"),
     [
         (["--solver", "nobody"], "'nobody' is not one of cp-sat, cp-sat-model, dfs"),
-        (["--solver", "dfs", "--warm-start", RING], "start: is more than the solver dfs"),
         (["--solver", "clingo", "--all"], "schemes: is more than the solver clingo"),
         (["--solver", "clingo", "--search-space", "surface"], "search_space: is surface"),
     ],

@@ -1,7 +1,4 @@
-"""Work for processes of their own: most of it does not come back.
-
-Workers that do everything in this process, where a test can change what they use.
-"""
+"""Work for processes of their own: most of it does not come back."""
 
 from __future__ import annotations
 
@@ -12,7 +9,6 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 _CHILD = "import os, sys, time; open(sys.argv[1], 'a').write(f'{os.getpid()}\\n'); time.sleep(600)"
 
@@ -60,21 +56,10 @@ def note(pids: str) -> None:
         file.write(f"{os.getpid()}\n")
 
 
-def kill_the_worker_once(mark: str) -> str:
-    """The first time, end the process that watches this one; the next time, come back."""
-    if not Path(mark).exists():
-        Path(mark).touch()
-        os.kill(os.getppid(), signal.SIGKILL)
-        time.sleep(600)
-    return "came back"
-
-
-def kill_the_worker_once_before(
-    mark: str, function: Callable[..., Any], arguments: tuple[Any, ...]
-) -> Any:
-    """The first time, end the process that watches this one; the next time, do the work."""
-    kill_the_worker_once(mark)
-    return function(*arguments)
+def leave_behind(pids: str) -> None:
+    """Note a child of its own in a file, and come back without it."""
+    child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+    Path(pids).write_text(str(child.pid))
 
 
 def running(pids: Path) -> list[int]:

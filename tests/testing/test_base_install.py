@@ -146,9 +146,10 @@ def test_check(base: Environment) -> None:
         f"print(cellcolor.Plan({FIRST_COLORS}).to_json())\n"
     )
     check = ("check", "half_pipe.surface.json", "-", "--json", "--require-optimal")
-    kept = ("--cache", "proofs", "--better", "better.surface.json")
+    kept = ("--cache", "proofs")
     code, out, err = base.run("cellcolor", *check, *kept, given=plan)
     assert (code, json.loads(out)["beatable_by"]) == (1, 1), err
-    better = (base.folder / "better.plan.json").read_text(encoding="utf-8")
+    colors = json.loads(out)["improvement"]["vertex_colors"]
+    better = json.dumps({"format": "cellcolor/plan", "version": 1, "vertex_colors": colors})
     code, out, err = base.run("cellcolor", *check, *kept, given=better)
     assert (code, json.loads(out)["optimal"]) == (0, True), err

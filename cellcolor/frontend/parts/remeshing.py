@@ -24,7 +24,7 @@ from cellcolor.frontend.parts.surface import SHARP, Faces, refine
 from cellcolor.frontend.parts.unfolding import fold_angle, unfolded
 from cellcolor.frontend.sizes import MOST_VERTICES
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.processes import Limits, run_alone
+from cellcolor.processes import run_alone
 
 _MEMORY = 3072.0  # MB (2**20 bytes) that the remesher may take
 _ITERATIONS = 10
@@ -99,7 +99,7 @@ def remeshed(
     tell(f"remeshing to about {expected:,.0f} vertices")
     kept = mesh.edges[mesh.sharp_edges(SHARP)]
     arguments = mesh.points, mesh.corners, length, kept
-    ended = run_alone(_remesh, arguments, Limits(math.inf, _MEMORY), lambda: deadline.over)
+    ended = run_alone(_remesh, arguments, math.inf, _MEMORY, lambda: deadline.over)
     if ended.end == "stopped":
         deadline.check()
     if ended.end != "done":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
@@ -19,7 +20,8 @@ from cellcolor.errors import CellcolorError, InputError, RefusedResult, SolverMi
 from cellcolor.lab.families.registry import GROWING, LARGE, MEDIUM, SMALL, Family
 from cellcolor.lab.runs.row import LATE, Key, Row, Status
 from cellcolor.lab.workers import Task, Workers, as_they_end
-from cellcolor.processes import Ended, Limits
+from cellcolor.machine import this_machine
+from cellcolor.processes import Ended
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.registry import solver_version
 
@@ -229,8 +231,8 @@ class Sweep:
                 options = Options(self.search_space, workers=workers, seed=repetition)
                 # The process's own limits are met only by what does not keep its own.
                 seconds = _START_UP + limit + LATE + _CHECKING
-                limits = Limits(seconds, self.megabytes)
-                yield known, Task(answer, (instance, solver, options, limit), limits)
+                work = instance, solver, options, limit
+                yield known, Task(answer, work, seconds, self.megabytes)
 
 
 def _row(known: dict[str, Any], ended: Ended) -> Row:
@@ -243,7 +245,7 @@ def _row(known: dict[str, Any], ended: Ended) -> Row:
         cpu_seconds=round(ended.cpu_seconds, 3),
         process_seconds=round(ended.seconds, 3),
         peak_mb=round(ended.peak_mb, 1),
-        **asdict(ended.machine),
-        load=round(ended.load, 2),
+        **asdict(this_machine()),
+        load=round(os.getloadavg()[0], 2),
         date=datetime.now(UTC).isoformat(timespec="seconds"),
     )

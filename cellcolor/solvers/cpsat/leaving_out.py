@@ -7,7 +7,7 @@ model such a cell has a color of its own, which is joinable nowhere, and its roo
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from math import ceil
 
@@ -24,7 +24,6 @@ def least_left_out(
     instance: Instance,
     weights: Sequence[int],
     segments: int,
-    required: Collection[int],
     options: Options,
 ) -> tuple[frozenset[int], int] | None:
     """The cells left out when a number of segments covers the most, in the search space ``paper``.
@@ -32,7 +31,6 @@ def least_left_out(
     Args:
         weights: of each cell, 0 or more.
         segments: the most that there may be.
-        required: cells that must not be left out.
         options: deadline, workers and seed.
 
     Returns:
@@ -44,7 +42,7 @@ def least_left_out(
     """
     nothing = len(instance.colors)
     try:
-        built = CompleteModel(_with_color(instance, required), deadline=options.deadline)
+        built = CompleteModel(_with_color(instance), deadline=options.deadline)
     except TooLarge:
         return None
     model, roots = built.model, built.variables.root
@@ -64,15 +62,12 @@ def least_left_out(
     return frozenset(found), sum(weights) - ceil(solver.best_objective_bound - 1e-6)
 
 
-def _with_color(instance: Instance, required: Collection[int]) -> Instance:
-    """The instance with one more color, which all cells but some have, and no edge joins."""
+def _with_color(instance: Instance) -> Instance:
+    """The instance with one more color, which all cells have, and no edge joins."""
     nothing = len(instance.colors)
     return replace(
         instance,
         colors=(*instance.colors, "-".join(("nothing", *instance.colors))),  # no other name
-        cells=tuple(
-            cell if cell.id in required else replace(cell, colors=(*cell.colors, nothing))
-            for cell in instance.cells
-        ),
+        cells=tuple(replace(cell, colors=(*cell.colors, nothing)) for cell in instance.cells),
         edges=tuple(replace(e, colors=instance.joinable(e.id)) for e in instance.edges),
     )

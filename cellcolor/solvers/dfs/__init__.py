@@ -2,8 +2,8 @@
 
 - ``graph``: section III-C, cells as cyclic lists of topological edges
 - ``cell_schemes``: section IV, the codes of 0, 1, × and brackets of one cell
-- ``zeros``: section IV-C, zeros are moved outside the brackets
-- ``search``: section V, the graph solved cell by cell, with the cost of section V-A
+- ``search``: section V, the graph solved cell by cell, with the cost of section V-A; and of section
+  IV-C, zeros are moved outside the brackets
 - ``cover``: not in the paper, a lower bound from a set cover (solver ``dfs-cover``)
 """
 
