@@ -66,7 +66,7 @@ def test_loops_beside_do_not_hide_a_conflict(islands: int) -> None:
 @given(seed=SEEDS, cells=st.integers(1, 12), colors=st.integers(1, 5))
 def test_strangers_found_at_once_share_no_region(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 3, colors)
-    found = greedy_independent_set(instance)
+    found = greedy_independent_set(color_regions(instance))
     for one, other in combinations(found, 2):
         assert not any({one, other} <= region for _, region in color_regions(instance))
     assert 1 <= len(found) <= set_cover(color_regions(instance)).bound

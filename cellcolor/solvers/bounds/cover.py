@@ -102,10 +102,11 @@ def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> li
     Returns:
         The cells, ascending; None if none were found in time.
     """
-    cells = greedy_independent_set(instance)
+    regions = color_regions(instance)
+    cells = greedy_independent_set(regions)
     if len(cells) >= value:
         return sorted(cells)[:value]
-    touching = _touching(color_regions(instance))
+    touching = _touching(regions)
     found: list[int] = []
     for group in sorted(_groups(touching), key=len):
         if value > 0 and not deadline.over:
@@ -161,9 +162,10 @@ def _independent_set(
     return [group[place] for place in sorted(found or ())]
 
 
-def greedy_independent_set(instance: Instance) -> list[int]:
+def greedy_independent_set(regions: Sequence[Region]) -> list[int]:
     """Cells of which no two lie in one color region; not always the most."""
-    return _apart(range(len(instance.cells)), _touching(color_regions(instance)))
+    touching = _touching(regions)
+    return _apart(range(len(touching)), touching)
 
 
 def _apart(cells: Iterable[int], touching: Sequence[set[int]]) -> list[int]:

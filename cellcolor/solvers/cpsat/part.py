@@ -77,7 +77,7 @@ class Part:
         self._options, self._runner, self._report = options, runner, report
         self._enough = enough_crossings(instance)
         self._once = dict.fromkeys(self._enough, 1)
-        self.bound = self.surface_bound = len(greedy_independent_set(instance))
+        self.bound = self.surface_bound = len(greedy_independent_set(self.regions))
         self.by = "strangers"
         self.cover_bound = self.bound
         self.planner: Planner | None = None

@@ -126,9 +126,8 @@ def sector_graph(
     for cell, darts in enumerate(graph.lists):
         deadline.check()
         first, count = len(made.cell), len(darts)
-        rings = _enough_rings([graph.darts[dart].colors for dart in darts])
-        if most_rings is not None:
-            rings = min(rings, most_rings)
+        most = len(darts) if most_rings is None else most_rings
+        rings = _enough_rings([graph.darts[dart].colors for dart in darts], most)
         colors += (count * rings + 1) * len(graph.colors[cell])
         if most_colors is not None and colors > most_colors:
             raise TooLarge(
@@ -180,19 +179,21 @@ def _add_rings(made: SectorGraph, cell: int, outward: Sequence[tuple[int, int] |
     made.around.append([half for half in outward if half is not None])
 
 
-def _enough_rings(colors: Sequence[frozenset[int]]) -> int:
-    """How many rings every scheme can be drawn in.
+def _enough_rings(colors: Sequence[frozenset[int]], most: int) -> int:
+    """How many rings every scheme can be drawn in, or ``most`` if these are more.
 
     Args:
         colors: those joinable at each dart of a cyclic list.
     """
     if len(colors) < 2 or len(frozenset[int]().union(*colors)) < 2:
         return 0  # sub-cells that have darts in state 1 would be of one color
-    return _longest_chain(colors) // 2
+    return min(most, _longest_chain(colors, 2 * most) // 2)
 
 
-def _longest_chain(colors: Sequence[frozenset[int]]) -> int:
+def _longest_chain(colors: Sequence[frozenset[int]], enough: int) -> int:
     """The most chords between darts of a common color of which each separates its neighbors.
+
+    The search ends where there are enough of them.
 
     Chords of a chain are nested in some stretch of the cyclic list. So ``most[first]`` is the
     length of the longest chain of nested chords in the stretch of ``size`` darts from the first.
@@ -205,6 +206,8 @@ def _longest_chain(colors: Sequence[frozenset[int]]) -> int:
         chord = share[first, (first + size - 1) % count]
         within = np.where(chord, 1 + np.roll(shorter, -1), 0)
         shorter, most = most, np.maximum.reduce([most, np.roll(most, -1), within])
+        if most.max() >= enough:
+            break
     return int(most.max())
 
 

@@ -20,7 +20,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import ModelSize, Seam, count_segments
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import InputError
-from cellcolor.solvers.bounds.cover import greedy_independent_set
+from cellcolor.solvers.bounds.cover import color_regions, greedy_independent_set
 from cellcolor.solvers.cpsat.certificates import conflict_certificate
 from cellcolor.solvers.cpsat.dart_graph import (
     DartGraph,
@@ -212,7 +212,13 @@ class _Search:
         A kind is named only where it raised the bound of some part.
         """
         if not self._parts:
-            return (Bound("strangers", len(greedy_independent_set(self._instance)), "surface"),)
+            return (
+                Bound(
+                    "strangers",
+                    len(greedy_independent_set(color_regions(self._instance))),
+                    "surface",
+                ),
+            )
         certificate = conflict_certificate(self._parts)
         by = {part.by for part in self._parts}
         bounds = [
