@@ -19,8 +19,8 @@ from thumbnail import thumbnail
 LIBRARY = Path(__file__).parents[1] / "instances"
 FOLDER = Path(__file__).parent / "_library"
 TABLE = "table.txt"
-HEAD = ("", "graph", "family", "cells", "darts", "loops", "colors", "holes")
-HEAD += ("paper", "any division", "verified", "found")
+HEAD = ("", "graph", "family", "cells", "darts", "loops", "colors", "paper", "any division")
+HEAD += ("verified", "found by")
 
 
 def write_table(library: Path, folder: Path) -> None:
@@ -33,7 +33,7 @@ def write_table(library: Path, folder: Path) -> None:
             picture.write_text(thumbnail(graph_of(library / entry.file)), encoding="utf-8")
         shown = "" if entry.file is None else f"![]({folder.name}/{picture.name})"
         rows.append(f"| {' | '.join([shown, *_row(entry)])} |")
-    lines = [f"| {' | '.join(HEAD)} |", "|---|---|---" + "|--:" * 7 + "|---|---|", *rows]
+    lines = [f"| {' | '.join(HEAD)} |", "|---|---|---" + "|--:" * 6 + "|---|---|", *rows]
     text = "\n".join(lines) + "\n"
     table = folder / TABLE
     if not table.exists() or table.read_text(encoding="utf-8") != text:
@@ -42,7 +42,7 @@ def write_table(library: Path, folder: Path) -> None:
 
 def _row(entry: LibraryEntry) -> list[str]:
     lower = entry.surface.lower
-    numbers = (entry.cells, entry.darts, entry.loops, entry.colors, entry.holes)
+    numbers = (entry.cells, entry.darts, entry.loops, entry.colors)
     return [
         f"`{entry.name}`",
         entry.family,
@@ -60,9 +60,8 @@ def _span(known: KnownRange) -> str:
 
 
 def _found(known: KnownRange) -> str:
-    """Who proved the minimum, or who found the division where it is open, and when."""
-    end = known.lower if known.upper is None or known.proved else known.upper
-    return f"{end.solver} ({end.version}), {end.date}"
+    """Who proved the minimum, or who found the division where it is open."""
+    return (known.lower if known.upper is None or known.proved else known.upper).solver
 
 
 if __name__ == "__main__":

@@ -115,7 +115,6 @@ def summary(tables: tuple[Path, ...]) -> Exit:
 
 def _read(tables: Sequence[Path]) -> list[Row]:
     """The rows of all tables."""
-    from cellcolor.lab.runs.row import Row
     from cellcolor.lab.runs.table import read_table
 
-    return [row for path in tables for row in read_table(path, Row)]
+    return [row for path in tables for row in read_table(path)]

@@ -53,8 +53,8 @@ def run_solvers(
     contestants = list(_contestants(solvers))
     if not contestants:
         return Exit.BAD_INPUT
-    table: AbstractContextManager[TableFile[Row] | None] = (
-        nullcontext() if output is None else TableFile(output, Row)
+    table: AbstractContextManager[TableFile | None] = (
+        nullcontext() if output is None else TableFile(output)
     )
     bad: list[Specimen] = []
     interrupted = False

@@ -78,9 +78,9 @@ def print_solution(instance: Instance, solution: Solution) -> None:
 def _segments(instance: Instance, solution: Solution, shares: Shares) -> Table:
     """Color, cells and share of each segment, and what is in none."""
     rows = [
-        (str(row.segment), shown(row.color), row.cells, row.percent)
-        for row in segment_rows(instance, solution, shares)[:_SEGMENTS_SHOWN]
-    ]
+        (number, shown(color), cells, share)
+        for number, color, cells, share in segment_rows(instance, solution, shares)
+    ][:_SEGMENTS_SHOWN]
     if (more := len(shares.segments) - _SEGMENTS_SHOWN) > 0:
         rows.append(("…", count(more, "more segment"), "", ""))
     if shares.of == "surface":

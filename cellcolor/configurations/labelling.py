@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cellcolor.arrays import Array, Index
-from cellcolor.configurations.components import MANY, components_of
+from cellcolor.configurations.components import components_of, cut_apart, twice
 from cellcolor.configurations.matching import (
+    CIRCLE,
     DoubtfulPair,
     Linked,
-    Matching,
+    Nearest,
     farthest,
     stays_within,
 )
@@ -26,6 +27,7 @@ from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
+from cellcolor.memory import chunks
 
 MAX_STEP = pi / 4
 """rad or m. A longer step between neighboring vertices is never clear."""
@@ -42,7 +44,7 @@ TOLERANCE = 1e-3
 SAME = 1e-4
 """rad or m. Configurations of a vertex that are no farther apart are one, found twice."""
 
-_AT_ONCE = 1_000_000  # pairs of configurations
+_MANY = 5  # vertices or pairs that are named
 
 Conflicts = Literal["refuse", "cut"]
 
@@ -139,9 +141,9 @@ class Labelling:
                 f"{len(doubtful)} of {count(self.edges, 'mesh edge')} doubtful "
                 f"({self.doubtful_share:.1%}): whatever is proved is proved of this labelling"
             )
-            lines += [f"  {pair}" for pair in self.doubtful[:MANY]]
-            if len(self.doubtful) > MANY:
-                lines.append(f"  and {len(self.doubtful) - MANY} more")
+            lines += [f"  {pair}" for pair in self.doubtful[:_MANY]]
+            if len(self.doubtful) > _MANY:
+                lines.append(f"  and {len(self.doubtful) - _MANY} more")
         return "\n".join(lines)
 
 
@@ -152,7 +154,7 @@ def from_configurations(
     *,
     names: Sequence[Sequence[str]] | None = None,
     limits: ArrayLike | None = None,
-    periods: ArrayLike = 2 * pi,
+    periods: ArrayLike = CIRCLE,
     linked: Linked | None = None,
     max_step: float = MAX_STEP,
     conflicts: Conflicts = "refuse",
@@ -213,30 +215,46 @@ def from_configurations(
     there = np.asarray(np.isfinite(joints).all(axis=2))
     outside = 0
     if span is not None:
-        inside = there & stays_within(span, joints, np.zeros_like(joints), circles)
+        still = np.zeros_like(joints)
+        inside = there & stays_within(span, joints, still, still, circles)
         outside = int((there & ~inside).sum())
         there = inside
     first = _first_of_same(joints, branch, circles)
     there &= first == np.arange(joints.shape[1])
     usable = np.where(there[:, :, None], joints, np.nan)
     edges = np.asarray(bare.mesh.edges)
-    matching = Matching(usable, branch, circles, max_step, span, linked)
-    found = matching.along(edges, deadline)
-    colors = components_of(there, edges, found.pairs, found.strength, cut=conflicts == "cut")
-    kept = np.delete(found.pairs, colors.cut, axis=0)
+    matching = Nearest(usable, there, branch, circles, span, max_step, linked)
+    pairs, strength = matching.along(edges, deadline)
+    kept = pairs
+    color = components_of(there, edges, pairs)
+    if len(repeated := twice(color)):
+        if conflicts == "refuse":
+            at = np.unique(repeated[:, 0]).tolist()
+            raise InputError(None, f"configurations[{at[0]}]", _refusal(at))
+        kept = cut_apart(there, edges, pairs, strength)
+        color = components_of(there, edges, kept)
+    doubtful = tuple(matching.noted)
     surface = LabelledSurface(
         name,
-        _color_names(names, colors.color, colors.count),
+        _color_names(names, color),
         bare.vertices,
         bare.faces,
-        tuple(tuple(own[own >= 0].tolist()) for own in colors.color),
-        _cracks(edges, colors.color, kept),
-        _meta(found.doubtful),
+        tuple(tuple(own[own >= 0].tolist()) for own in color),
+        _cracks(edges, color, kept),
+        _meta(doubtful),
     )
-    color = np.take_along_axis(colors.color, first, axis=1)
-    of_vertex = tuple(own[:size] for own, size in zip(color, sizes, strict=True))
-    return Labelling(
-        surface, joints, circles, of_vertex, found.doubtful, len(edges), len(colors.cut), outside
+    of_each = np.take_along_axis(color, first, axis=1)
+    of_vertex = tuple(own[:size] for own, size in zip(of_each, sizes, strict=True))
+    cut = len(pairs) - len(kept)
+    return Labelling(surface, joints, circles, of_vertex, doubtful, len(edges), cut, outside)
+
+
+def _refusal(vertices: list[int]) -> str:
+    named = ", ".join(map(str, vertices[:_MANY])) + (", …" if len(vertices) > _MANY else "")
+    return (
+        f"one color has two configurations of a vertex (vertices {named}): matches lead from one "
+        "to the other around a way of mesh edges; mesh finer, or say what is linked and lower "
+        "max_step, so that you are asked, or have the weakest cut (conflicts='cut')"
     )
 
 
@@ -318,13 +336,12 @@ def _first_of_same(joints: Array, branch: Index, periods: Array) -> Index:
     """The first configuration (n, s) of the vertex that each one is the same as."""
     slots = joints.shape[1]
     found = np.tile(np.arange(slots), (len(joints), 1))
-    rows = max(1, _AT_ONCE // (slots * slots))
-    for first in range(0, len(joints), rows):
-        own, named = joints[first : first + rows], branch[first : first + rows]
+    for part in chunks(len(joints), slots):
+        own, named = joints[part], branch[part]
         same = farthest(own[:, :, None], own[:, None], periods) <= SAME
         same &= named[:, :, None] == named[:, None]
         same |= np.eye(slots, dtype=bool)
-        found[first : first + rows] = same.argmax(axis=2)
+        found[part] = same.argmax(axis=2)
     return found
 
 
@@ -347,10 +364,9 @@ def _branches(names: Sequence[Sequence[str]] | None, sizes: Sequence[int], slots
     return found
 
 
-def _color_names(
-    names: Sequence[Sequence[str]] | None, color: Index, colors: int
-) -> tuple[str, ...]:
+def _color_names(names: Sequence[Sequence[str]] | None, color: Index) -> tuple[str, ...]:
     """The name of each color: that of its configurations, numbered where several have it."""
+    colors = int(color.max(initial=-1)) + 1
     if names is None:
         return tuple(f"color {number}" for number in range(1, colors + 1))
     base: dict[int, str] = {}
@@ -373,14 +389,13 @@ def _cracks(edges: Index, color: Index, matched: Index) -> tuple[Crack, ...]:
     """Where both ends of a mesh edge have a color and its configurations are not matched."""
     i, j = edges.T
     torn: dict[int, list[int]] = {}
-    rows = max(1, _AT_ONCE // color.shape[1] ** 2)
-    for first in range(0, len(edges), rows):
-        here, there = color[i[first : first + rows]], color[j[first : first + rows]]
+    for part in chunks(len(edges), color.shape[1]):
+        here, there = color[i[part]], color[j[part]]
         same = (here[:, :, None] == there[:, None]) & (here >= 0)[:, :, None]
-        own = matched[(first <= matched[:, 0]) & (matched[:, 0] < first + rows)]
-        same[own[:, 0] - first, own[:, 1], own[:, 2]] = False
+        own = matched[(part.start <= matched[:, 0]) & (matched[:, 0] < part.stop)]
+        same[own[:, 0] - part.start, own[:, 1], own[:, 2]] = False
         for row, a, _ in np.argwhere(same).tolist():
-            torn.setdefault(first + row, []).append(int(here[row, a]))
+            torn.setdefault(part.start + row, []).append(int(here[row, a]))
     return tuple(
         Crack(int(i[row]), int(j[row]), tuple(sorted(own))) for row, own in sorted(torn.items())
     )

@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from os import PathLike
+from typing import NamedTuple
 
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.instance import Instance
@@ -25,14 +25,8 @@ _CORRECTION = re.compile(r"([0-9]{1,9})=(-1|[0-9]{1,9}),(-1|[0-9]{1,9})")
 Sides = tuple[int, int]
 
 
-@dataclass(frozen=True, slots=True)
-class _Line:
-    """One line of the file.
-
-    Attributes:
-        number: of the line, from 1.
-        values: the numbers in it.
-    """
+class _Line(NamedTuple):
+    """The numbers in one line of the file, and its own number, from 1."""
 
     number: int
     values: tuple[int, ...]

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated
 
 from pydantic import Field, NonNegativeInt
 
-from cellcolor.data.bounds import Extent
-from cellcolor.data.solution import SearchSpace, Solution
+from cellcolor.data.solution import SearchSpace
 from cellcolor.data.value import Document, Value
-from cellcolor.data.wording import count, span
+from cellcolor.data.wording import span
 from cellcolor.errors import InputError
 from cellcolor.files.validation import settle
 
-_WHERE: dict[SearchSpace, str] = {
-    "paper": "search space paper",
-    "surface": "any division of the surface",
-}
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 Date = Annotated[str, Field(pattern=r"^\d{4}-\d{2}-\d{2}$")]
 
@@ -163,35 +158,6 @@ class LibraryEntry(Value):
     def is_open(self) -> bool:
         """Whether the minimum is not proved in one of the search spaces."""
         return not (self.paper.proved and self.surface.proved)
-
-    def beaten_by(
-        self, solution: Solution, bounds: Iterable[tuple[Extent, int, bool]]
-    ) -> list[str]:
-        """What a valid solution of this graph proves beyond the entry, one line each.
-
-        Args:
-            solution: the division, in either search space.
-            bounds: its lower bounds that count: what each holds for, its value, and whether it has
-                a certificate that was verified.
-        """
-        bounds, lines = list(bounds), []
-        for space, where in _WHERE.items():
-            known = self.range_in(space)
-            # The divisions of the search space paper have one strand: every bound holds there.
-            there = [bound for bound in bounds if space == "paper" or bound[0] == "surface"]
-            _, least, verified = max(there, key=lambda bound: bound[1:], default=("", 0, False))
-            lower = known.lower
-            if (least, verified) > (lower.value, lower.verified):
-                proof = {True: "with", False: "without"}
-                lines.append(
-                    f"{where}: at least {count(least, 'segment')}, {proof[verified]} certificate; "
-                    f"the index has {lower.value}, {proof[lower.verified]}"
-                )
-            fewest = solution.segments if space in ("surface", solution.search_space) else None
-            if fewest is not None and (known.upper is None or fewest < known.upper.value):
-                has = "none" if known.upper is None else known.upper.value
-                lines.append(f"{where}: {count(fewest, 'segment')}; the index has {has}")
-        return lines
 
     def range_in(self, space: SearchSpace) -> KnownRange:
         """Where the minimum lies in a search space."""

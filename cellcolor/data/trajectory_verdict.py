@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Annotated, Any, Literal
+from dataclasses import dataclass
+from typing import Any, Literal
 
-from pydantic import Field
-
-from cellcolor.data.value import Count, Document, Value, adapter_of, every_member_of
+from cellcolor.data.value import Count, Document, Value, every_member_of
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
-from cellcolor.files.documents import take_body, validate
+from cellcolor.files.validation import settle
 
 FaultKind = Literal[
     "time",
@@ -113,10 +111,12 @@ class CoveredArea(Value):
 
     def __str__(self) -> str:
         again = f"{self.repeated_m:.3f} of {self.length_m:.2f} m along earlier passes"
-        again += f", {self.stated_repeated_m:.3f} m of it stated"
+        again += f", {self.stated_repeated_m:.3f} m of it announced by the trajectory"
+        far, near = (f"{1e3 * factor * self.spacing_m:g} mm" for factor in (1.5, 0.75))
         return (
-            f"covered {self.covered_share:.2%}, closely {self.closely_covered_share:.2%}, rightly "
-            f"left out {self.left_out_share:.2%} of the {self.reachable_m2:.4f} m² with a color; "
+            f"within {far} of a pass {self.covered_share:.2%}, within {near} "
+            f"{self.closely_covered_share:.2%}, left out because the arm cannot reach it "
+            f"{self.left_out_share:.2%} of the {self.reachable_m2:.4f} m² with a color; "
             f"visits {self.mean_visits:.2f} on average, {self.most_visits} at most, again "
             f"on {self.visited_again_share:.1%}; {again}"
         )
@@ -131,9 +131,9 @@ class StrokeFeed(Value):
         time: when the stroke begins, s.
         seconds: how long it takes.
         asked_m_per_s: the setup's ``speed_m_per_s``.
-        mean_m_per_s: length by time.
-        lowest_m_per_s: the lowest mean over a stretch of ``window_m``, without the first and the
-            last such stretch, in which the tool comes from rest and goes to rest.
+        mean_m_per_s: length by time. This and what follows is without the first and the last
+            stretch of ``window_m``, in which the tool comes from rest and goes to rest.
+        lowest_m_per_s: the lowest mean over a stretch of ``window_m``.
         window_m: the tool's footprint, m.
         slow_share: share of the time in which the tool is slower than 90 % of what is asked.
         joint: that slows it down for the longest time; None if no joint is near a limit.
@@ -173,6 +173,7 @@ class TrajectoryVerdict(Document):
     """What an independent judge finds in a trajectory.
 
     Attributes:
+        valid: whether there is no fault.
         name: the trajectory's.
         samples: how many it has.
         tested: configurations tested, those between distant samples included.
@@ -189,11 +190,13 @@ class TrajectoryVerdict(Document):
         covered: what it covers; None where that is not judged.
         notes: what was not judged, and why, a sentence each.
         feeds: of each stroke; empty without times, or where the setup asks for no feed.
+        file: the trajectory as it was named to cellcolor check; in no stored file.
     """
 
     FORMAT = "cellcolor/trajectory-verdict"
     LINES = ("faults",)
 
+    valid: bool
     name: str
     samples: Count
     tested: Count
@@ -209,16 +212,17 @@ class TrajectoryVerdict(Document):
     covered: CoveredArea | None
     notes: tuple[str, ...]
     feeds: tuple[StrokeFeed, ...] = ()
+    file: str | None = None
+
+    def __post_init__(self) -> None:
+        settle(self)
+        if self.valid is bool(self.fault_counts):
+            raise InputError(None, "valid", "says something else than fault_counts")
 
     @property
     def feed_lines(self) -> tuple[str, ...]:
         """What is said of the feed of each stroke."""
         return tuple(f"stroke {number}: {feed}" for number, feed in enumerate(self.feeds))
-
-    @property
-    def valid(self) -> bool:
-        """Whether there is no fault."""
-        return not self.fault_counts
 
     def of_kind(self, kind: FaultKind) -> tuple[Fault, ...]:
         """The faults of one kind."""
@@ -230,24 +234,7 @@ class TrajectoryVerdict(Document):
         return f"{self.name}: {said}, {count(self.lift_offs, 'lift-off')}"
 
     def to_document(self) -> dict[str, Any]:
-        head = {"format": self.FORMAT, "version": 1, "valid": self.valid}
-        return head | every_member_of(self)
-
-    @classmethod
-    def from_document(cls, document: dict[str, Any]) -> TrajectoryVerdict:
-        raw = validate(adapter_of(_VerdictFile), take_body(document, cls.FORMAT))
-        verdict = cls(**{member.name: getattr(raw, member.name) for member in fields(cls)})
-        if raw.valid_ != verdict.valid:
-            raise InputError(None, "valid", "says something else than fault_counts")
-        return verdict
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _VerdictFile(TrajectoryVerdict):
-    """The file's members, and ``file``, which ``cellcolor check`` adds to what it prints."""
-
-    valid_: Annotated[bool, Field(alias="valid")]
-    file: Annotated[
-        str | None,
-        Field(description="the trajectory as it was named to cellcolor check; in no stored file."),
-    ] = None
+        members = every_member_of(self)
+        file = members.pop("file")
+        found = {"format": self.FORMAT, "version": 1} | members
+        return found if file is None else {"file": file} | found

@@ -202,27 +202,31 @@ def arm_of(
     Raises:
         InputError: none does.
     """
-    from cellcolor.frontend.arm.assembly import fix_joints
+    from cellcolor.frontend.arm.assembly import check_position, settled
     from cellcolor.frontend.arm.kinematics import forward
+    from cellcolor.frontend.arm.loading import weight_faults
     from cellcolor.frontend.arm.urdf import load_urdf
-    from cellcolor.frontend.contact.engine import pairs_of
-    from cellcolor.frontend.reach.always_touching import always_touching
+    from cellcolor.frontend.contact.engine import always_touching, pairs_of
     from cellcolor.frontend.reach.prepared_arm import prepare_arm
 
     arm = load_urdf(urdf)
     flange = next((link for link in _FLANGES if link in arm.parent), None) or last_link(arm.parent)
     fixed = fixed_of(arm, flange, fix)
     with naming(urdf):
-        arm = fix_joints(arm, fixed)
-    chain = arm.chain(flange)
-    moved = next((at for at, link in enumerate(chain) if arm.joint_above.get(link) in arm.kinds), 0)
+        for name in arm.leading.keys() & fixed:
+            check_position(arm, name, fixed[name])
+        still, _ = settled(arm, fixed)
+    chain, moving = arm.chain(flange), arm.leading.keys() - still
+    moved = next((at for at, link in enumerate(chain) if arm.joint_above.get(link) in moving), 0)
     standing = [link for link in chain[: moved + 1] if link in arm.shapes]
-    weightless = bool(arm.weightless) or (tool is not None and is_weightless(load_urdf(tool)))
+    weightless = bool(weight_faults(arm, still)) or (
+        tool is not None and is_weightless(load_urdf(tool))
+    )
     keys = {
         "arm": urdf.name,
         "arm_urdf": json.dumps(_relative(urdf, folder)),
         "flange": json.dumps(flange),
-        "mount": mount_line(arm, flange),
+        "mount": mount_line(arm, flange, still),
         "tool": json.dumps("tool.urdf" if tool is None else _relative(tool, folder)),
         "tip": json.dumps(tip),
         "standing": json.dumps(standing),
@@ -311,7 +315,6 @@ def best_place(
     Raises:
         InputError: nothing of it can be reached anywhere.
     """
-    from cellcolor.frontend.parts.placement import Placement
     from cellcolor.frontend.prepared import prepare
     from cellcolor.frontend.scene import Scene
 
@@ -319,7 +322,7 @@ def best_place(
     table["object"]["file"] = str(mesh.resolve())
     scene = Scene(**table | {"setup": arm.setup})
     with naming(mesh):
-        vertices = scene.object.surface(scene.folder, deadline).vertices
+        vertices = scene.placement.placed(scene.object.surface(scene.folder, deadline).vertices)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     middle = (low + high) / 2
     tried: list[_Reached] = []
@@ -333,7 +336,7 @@ def best_place(
     for far, height in product(_FARTHER, heights):
         position = x + far * arm.reach - middle[0], y - middle[1], height
         try:
-            place = Placement(position_m=(np.round(position, 3) + 0.0).tolist())
+            place = scene.placement.varied(position_m=(np.round(position, 3) + 0.0).tolist())
             if prepared is None:
                 prepared = prepare(scene.varied(placement=place), deadline)
             else:

@@ -13,8 +13,6 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
 
 if TYPE_CHECKING:
-    import xml.etree.ElementTree as ET
-
     from cellcolor.arrays import Array, Index, Mask
     from cellcolor.frontend.arm.urdf import Urdf
     from cellcolor.frontend.parts.surface import Surface
@@ -26,8 +24,8 @@ CoverChoice = Literal["largest", "all"]
 
 _TOWARD = np.array([-1.0, 0.0, 1.0]) / np.sqrt(2)  # the part lies before the robot: up and back
 _ALONG = 1e-3  # rad; an axis so near to another one is along it
-_AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
 _OFF, _MOST_OFF = 1e-6, 1e-3  # m; a flange so far beside the last axis was measured, not meant
+_UPRIGHT, _AWRY = 0.5, 0.35  # how far the mean of normals leans; rad: less is not turned
 _ANY_WAY = 0.2  # the mean of the unit normals of what faces every way is shorter
 _LARGER = 1.02  # times the inner side's area has a shell's outer one, if it is bent
 _ABOVE = (0.1, 0.15, 0.05, 0.2)  # m; so far over the part the arm waits, the first that is free
@@ -51,18 +49,21 @@ def last_link(parent: dict[str, str]) -> str:
 
 def is_weightless(tool: Urdf) -> bool:
     """Whether a link with a shape has no mass."""
-    links = {link.get("name", ""): link for link in tool.xml.findall("link")}
-    return any(links[name].find("inertial") is None for name in tool.shapes)
+    return any(tool.links[name].find("inertial") is None for name in tool.shapes)
 
 
-def mount_line(arm: Urdf, flange: str) -> str:
+def mount_line(arm: Urdf, flange: str, still: Mapping[str, float]) -> str:
     """The setup's lines that put the tool's z axis onto the last joint's, if it is not there.
 
     Some vendors' flanges have their x axis along that of the joint, or lie a little beside it.
+
+    Args:
+        still: the positions of joints that stand still.
     """
+    from cellcolor.frontend.arm.assembly import last_axis
     from cellcolor.frontend.parts.placement import rpy_from_rotation
 
-    (x, y, z), beside = _last_axis(arm, flange)
+    (x, y, z), beside = last_axis(arm, flange, still)
     lines = ""
     off = float(np.linalg.norm(beside))
     if _OFF < off < _MOST_OFF:
@@ -80,52 +81,18 @@ def mount_line(arm: Urdf, flange: str) -> str:
     return f"{lines}mount_rpy_rad = {angles}   # turns the tool's z axis onto the last joint's\n"
 
 
-def _last_axis(arm: Urdf, flange: str) -> tuple[Array, Array]:
-    """The last axis (3,) before the flange, in its frame, and how far beside it the flange is, m.
-
-    The axis points outward with all joints at zero.
-    """
-    from cellcolor.frontend.parts.placement import rotation_from_rpy
-
-    joints = {joint.get("name"): joint for joint in arm.xml.findall("joint")}
-    turn, out, link = np.eye(3), np.zeros(3), flange  # of the flange, seen from a link before it
-    axis: Array | None = None
-    beside = np.zeros(3)
-    while link in arm.parent:
-        joint = joints[arm.joint_above[link]]
-        if axis is None and arm.joint_above[link] in arm.kinds:
-            axis = _numbers(joint.find("axis"), "xyz", "1 0 0") @ turn
-            axis /= np.linalg.norm(axis)
-            beside = out @ turn - (out @ turn @ axis) * axis
-        if axis is not None and abs(ahead := axis @ (out @ turn)) > _AHEAD:
-            return np.asarray(axis * np.sign(ahead)), beside
-        xyz, rpy = (_numbers(joint.find("origin"), key, "0 0 0") for key in ("xyz", "rpy"))
-        rotation = rotation_from_rpy(*rpy)
-        turn, out, link = rotation @ turn, xyz + rotation @ out, arm.parent[link]
-    return np.array([0.0, 0.0, 1.0]) if axis is None else axis, beside
-
-
-def _numbers(element: ET.Element | None, key: str, usual: str) -> Array:
-    return np.array((usual if element is None else element.get(key, usual)).split(), dtype=float)
-
-
 def fixed_of(arm: Urdf, flange: str, given: Mapping[str, float]) -> dict[str, float]:
     """The positions of joints that stand still: those given, rails, and what is beside the chain.
 
     Where none is given, the one nearest to zero.
     """
-    from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC
+    from cellcolor.frontend.arm.urdf import PRISMATIC, limits_of
 
     in_chain = {arm.joint_above[link] for link in arm.chain(flange)[1:]}
-    joints = {joint.get("name", ""): joint for joint in arm.xml.findall("joint")}
     fixed = dict(given)
-    for name, kind in arm.kinds.items():
+    for name, kind in arm.leading.items():
         if name not in fixed and (kind == PRISMATIC or name not in in_chain):
-            limit = None if kind == CONTINUOUS else joints[name].find("limit")
-            ends = (0.0, 0.0)
-            if limit is not None:
-                ends = float(limit.get("lower", 0)), float(limit.get("upper", 0))
-            fixed[name] = float(np.clip(0.0, *ends))
+            fixed[name] = float(np.clip(0.0, *limits_of(arm.joints[name])))
     return fixed
 
 
@@ -139,10 +106,33 @@ def fixed_line(fixed: Mapping[str, float]) -> str:
 
 @dataclass(frozen=True)
 class Side:
-    """Which side of the part is covered: what is filled into the scene's text, and what to say."""
+    """Which side of the part is covered.
+
+    Attributes:
+        keys: what is filled into the scene's text.
+        note: what to say.
+    """
 
     keys: dict[str, str]
     note: str
+
+
+def _chosen(
+    keys: dict[str, str], note: str, mean: Array | None = None, outside: Outside | None = None
+) -> Side:
+    """The side, and how far it is turned about the vertical so that it faces the robot.
+
+    Args:
+        mean: of its normals (3,), if it has to face the robot; not if it is to face ``away``.
+    """
+    yaw = 0.0
+    if mean is not None and outside != "away" and np.hypot(mean[0], mean[1]) > _UPRIGHT:
+        yaw = round(float(np.angle(-(mean[0] - 1j * mean[1]))), 4) + 0.0
+        if abs(yaw) > _AWRY:
+            note += f"; turned by {np.degrees(yaw):.0f} degrees, it faces the robot"
+        else:
+            yaw = 0.0
+    return Side(keys | {"rpy": json.dumps([0.0, 0.0, yaw])}, note)
 
 
 def side_of(surface: Surface, outside: Outside | None, cover: CoverChoice | None) -> Side:
@@ -164,10 +154,12 @@ def side_of(surface: Surface, outside: Outside | None, cover: CoverChoice | None
     sides = None if thick is None else shell_sides(mesh)
     if thick is not None and sides is not None and cover != "all":
         number, name, other = _side(mesh, sides, outside)
-        return Side(
+        return _chosen(
             {"flip": "", "cover": _cover(mesh, sides[number])},
             f"the part is a shell, {1e3 * thick:.2g} mm thick: its {name} is covered ({other} for "
             "the other one, --cover all for both)",
+            facing(mesh, sides[number]),
+            outside,
         )
     flip = _flipped(mesh, outside)
     mean = facing(mesh) * (-1 if flip else 1)
@@ -185,7 +177,7 @@ def side_of(surface: Surface, outside: Outside | None, cover: CoverChoice | None
         note += f"; {wound} faces {_way(mean)} ({other} for the other side)"
     elif thick is not None:
         note += f", both sides of a shell {1e3 * thick:.2g} mm thick ([cover] chooses one)"
-    return Side(keys, note)
+    return _chosen(keys, note, mean if mesh.border.any() else None, outside)
 
 
 def _side(mesh: TriangleMesh, sides: list[Mask], outside: Outside | None) -> tuple[int, str, str]:
@@ -265,7 +257,7 @@ def _home_over(prepared: PreparedScene) -> tuple[list[float], str] | None:
     nearest: Index = np.argsort(np.linalg.norm(surface.vertices - middle, axis=1))[:3]
     free = FreeSpace(prepared, motion_of(prepared).clearance_m)
     lower, upper = (np.clip(limit, -np.pi, np.pi) for limit in free.space.limits)
-    names = prepared.kinematics.branches if arm.named else ()
+    names = prepared.arm.kinematics.branches if arm.named else ()
     for above in _ABOVE:
         points = surface.vertices[nearest] + above * surface.normals[nearest]
         found = arm.inverse(points, -surface.normals[nearest])

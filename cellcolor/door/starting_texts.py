@@ -108,7 +108,7 @@ $flip$cover
 # Put where the arm reaches the part best, of nine places before the robot.
 [placement]
 position_m = $position              # of the file's origin, from the robot's root link
-rpy_rad = [0.0, 0.0, 0.0]           # extrinsic x, y, z
+rpy_rad = $rpy           # extrinsic x, y, z
 
 [ground]
 height_m = 0.0

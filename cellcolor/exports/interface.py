@@ -119,10 +119,8 @@ class Export:
 
     Attributes:
         kind: recognizes files written by cellcolor; only these are overwritten.
-        content: makes the bytes.
-        check: raises :class:`NotForThisArm` if there is no such file for the arm.
+        content: makes the bytes; raises :class:`NotForThisArm` if there is none for the arm.
     """
 
     kind: FileKind
     content: Callable[[PlannedMotion], bytes]
-    check: Callable[[PlannedMotion], None] = lambda _: None

@@ -33,26 +33,18 @@ _UR_JOINTS = (
 )
 
 
-def programs() -> dict[str, Export]:
-    """The programs in each language by the names of their files: joint moves, and linear ones."""
-    found = {}
-    for name, language in LANGUAGES.items():
-        for linear, stem in ((False, "cellcolor"), (True, "cellcolor_linear")):
-            found[stem + language.suffix] = Export(
-                language.kind,
-                partial(_program, language=language, linear=linear),
-                partial(_check, name=name),
-            )
-    return found
-
-
-def _check(planned: PlannedMotion, name: str) -> None:
+def _program(planned: PlannedMotion, name: str, linear: bool) -> bytes:
     if controller_of(planned).language != name:
         raise NotForThisArm(f"its controller does not speak {name}")
+    return "\n".join([*_lines(planned, LANGUAGES[name], linear), ""]).encode("ascii")
 
 
-def _program(planned: PlannedMotion, language: Language, linear: bool) -> bytes:
-    return "\n".join([*_lines(planned, language, linear), ""]).encode("ascii")
+PROGRAMS = {
+    stem + language.suffix: Export(language.kind, partial(_program, name=name, linear=linear))
+    for name, language in LANGUAGES.items()
+    for linear, stem in ((False, "cellcolor"), (True, "cellcolor_linear"))
+}
+"""The programs in each language by the names of their files: joint moves, and linear ones."""
 
 
 def controller_of(planned: PlannedMotion) -> Controller:

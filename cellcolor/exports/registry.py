@@ -11,7 +11,7 @@ from cellcolor.exports.languages import LANGUAGES
 EXPORTS = {
     "joints.csv": Export(joint_table.KIND, joint_table.joints_csv),
     "joint_trajectory.yaml": Export(joint_trajectory.KIND, joint_trajectory.joint_trajectory_yaml),
-    **programs.programs(),
+    **programs.PROGRAMS,
 }
 """The files beside those of cellcolor's own formats in the folder of a plan."""
 
@@ -21,19 +21,16 @@ def exported(planned: PlannedMotion) -> dict[str, bytes]:
     found = {}
     for name, export in EXPORTS.items():
         with suppress(NotForThisArm):
-            export.check(planned)
             found[name] = export.content(planned)
     return found
 
 
 def programs_of(planned: PlannedMotion) -> tuple[str, ...]:
     """The names of the programs for the arm's controller, none if there is none."""
-    try:
-        language = programs.controller_of(planned).language
-    except NotForThisArm:
+    if why_no_program(planned) is not None:
         return ()
-    suffix = LANGUAGES[language].suffix
-    return tuple(name for name in programs.programs() if name.endswith(suffix))
+    suffix = LANGUAGES[programs.controller_of(planned).language].suffix
+    return tuple(name for name in programs.PROGRAMS if name.endswith(suffix))
 
 
 def why_no_program(planned: PlannedMotion) -> str | None:

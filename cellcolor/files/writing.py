@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import os
 import re
+import secrets
+import signal
 import stat
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, Protocol
 
 from cellcolor.errors import InputError
-from cellcolor.files.temporary import Temporary, remove_strays, undisturbed
+from cellcolor.signals import handled_by
 
 MARKER = "cellcolor/picture"
 """The mark of every picture of ours: the ``generator`` of an HTML page, the ``Creator`` of a PNG or
@@ -191,30 +194,44 @@ def write(outputs: Sequence[Output], inputs: Sequence[Path] = ()) -> None:
     if len(set(places)) < len(places):
         twice = next(place for place in places if places.count(place) > 1)
         raise InputError(str(twice), None, "two files would be written there")
-    for folder in {place.parent for place in places}:
-        remove_strays(folder)
-    staged: list[Temporary] = []
+    staged: list[tuple[Path, Path]] = []  # temporary names and places
     try:
         for output in outputs:
             try:
                 if is_stream(output.path):
                     _stream(output)
-                else:
-                    with undisturbed():
-                        staged.append(Temporary(_place(output.path)))
-                    staged[-1].fill(output.content)
+                    continue
+                place = _place(output.path)
+                # A short name, whatever that of the place: names have a greatest length.
+                file = place.with_name(f".cellcolor-{secrets.token_hex(8)}.tmp")
+                staged.append((file, place))
+                with file.open("xb") as stream:
+                    stream.writelines(output.content)
             except (OSError, ValueError) as error:
                 raise _unwritable(output.path, error) from error
         with undisturbed():
-            for temporary in staged:
+            for file, place in staged:
                 try:
-                    temporary.rename()
+                    file.replace(place)
                 except OSError as error:
-                    raise _unwritable(temporary.place, error) from error
+                    raise _unwritable(place, error) from error
     finally:
         with undisturbed():
-            for temporary in staged:
-                temporary.discard()
+            for file, _ in staged:
+                with suppress(OSError):
+                    file.unlink(missing_ok=True)
+
+
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """Let signals wait until the end."""
+    waiting: list[int] = []
+    try:
+        with handled_by(lambda number, _frame: waiting.append(number)):
+            yield
+    finally:
+        if waiting:
+            signal.raise_signal(waiting[0])
 
 
 def _place(path: Path) -> Path:

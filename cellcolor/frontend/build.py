@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import importlib.metadata
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
+from functools import cached_property
 from os import PathLike
 from typing import Any
 
@@ -12,30 +14,27 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.data.candidate_table import CandidateTable
-from cellcolor.data.surface import Crack, LabelledSurface
+from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.value import Drawn, same_members
-from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.errors import naming
+from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.stand_in_report import report_on
-from cellcolor.frontend.links import Links
+from cellcolor.frontend.links import continuous_along, valid_along
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.frontend.reach.continuity import Coloring, find_cracks
+from cellcolor.frontend.reach.continuity import Coloring, color_nodes
 from cellcolor.frontend.reach.limit_colors import LimitColors, limit_colors
-from cellcolor.frontend.report import BuildReport, color_reports, count_reasons, survey_of
+from cellcolor.frontend.reach.slivers import SliverReport, clean
+from cellcolor.frontend.reach.validity import Verdicts
+from cellcolor.frontend.report import BuildReport, report_on
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.setup import Task
+from cellcolor.frontend.sizes import check_turns
 from cellcolor.frontend.stage_clock import Progress, StageClock
-from cellcolor.frontend.stages import Stages, judged
 from cellcolor.version import __version__
 
-Cracks = tuple[Crack, ...]
-
-_INJECTIVE = (
-    "solutions have no names and are distinguished by continuity; a color with two configurations "
-    "on one vertex: none found on this part"
-)
+TURN_NOT_DEFINED = "turn not defined"
+"""The reason at a vertex where the setup's rule for the tool's turn says nothing."""
+OFF = "tolerance"
+"""The reason of a candidate that is valid where the part should stand and not wherever it may."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -44,20 +43,33 @@ class BuildResult(Drawn):
 
     Attributes:
         surface: the input of the decomposition.
-        report: a summary in numbers for people.
-        stages: the result of each stage of the build.
         prepared: the scene in place, with the surface that was labelled.
+        verdicts: on all branches at all vertices, (n, branches).
+        continuous: (edges, branches) along which mesh edges a branch moves without a jump.
+        all_colors: of all valid candidates.
+        coloring: what the sliver policy leaves of them.
+        slivers_report: what it changed; None without one.
         limits: the colors of the surface, each of which keeps the joint limits by itself.
+        seconds: wall time of each stage.
         left_alone: (n,) the vertices that are not to be covered on purpose, see :meth:`without`;
             None for none.
     """
 
     surface: LabelledSurface
-    report: BuildReport
-    stages: Stages
     prepared: PreparedScene
+    verdicts: Verdicts
+    continuous: Mask
+    all_colors: Coloring
+    coloring: Coloring
+    slivers_report: SliverReport | None
     limits: LimitColors
+    seconds: Mapping[str, float]
     left_alone: Mask | None = None
+
+    @cached_property
+    def report(self) -> BuildReport:
+        """A summary in numbers for people."""
+        return report_on(self)
 
     @property
     def scene(self) -> Scene:
@@ -75,44 +87,27 @@ class BuildResult(Drawn):
 
         See :mod:`cellcolor.frontend.reach.sheets`.
         """
-        return self.stages.branches
+        return self.prepared.arm.kinematics.branches
 
     @property
     def configurations(self) -> Array:
         """(n, branches, joints) in rad, NaN where a branch has no solution."""
-        return self.stages.candidates.configurations
+        return self.verdicts.configurations
 
     @property
     def reasons(self) -> NDArray[np.uint8]:
         """(n, branches) codes: the first test that a candidate fails."""
-        return self.stages.candidates.reasons
+        return self.verdicts.reasons
 
     @property
     def reason_names(self) -> tuple[str, ...]:
         """What the codes mean: valid, no solution, and the tests in their order."""
-        return self.stages.candidates.reason_names
-
-    @property
-    def failures(self) -> dict[str, Mask]:
-        """(n, branches) of each test: the candidates that fail it, other tests or not.
-
-        Every test is made on every solution. A candidate is valid without some tests if it has a
-        solution and fails none of the others: masks of tests can be combined.
-        """
-        candidates = self.stages.candidates
-        solved = ~np.isnan(candidates.configurations[..., 0])
-        masks = {}
-        failed = self.prepared.judge.all_failures(candidates.configurations[solved])
-        for name, hit in failed.items():
-            masks[name] = np.zeros(solved.shape, dtype=bool)
-            masks[name][solved] = hit
-        return masks
+        return self.verdicts.reason_names
 
     @property
     def color_branch(self) -> tuple[int, ...]:
         """The branch of each color of the surface."""
-        branch = self.stages.cleaned.coloring.branch
-        return tuple(branch[color] for color in self.limits.color)
+        return tuple(self.coloring.branch[color] for color in self.limits.color)
 
     @property
     def node_color(self) -> NDArray[np.int64]:
@@ -121,7 +116,7 @@ class BuildResult(Drawn):
         Candidates that a sliver policy removed also have -1. Where a branch has several colors,
         with other full circles, it is the first of them.
         """
-        modulo = self.stages.cleaned.coloring.node_color
+        modulo = self.coloring.node_color
         node_color = np.full(modulo.shape, -1, dtype=np.int64)
         for color, branch in reversed(list(enumerate(self.color_branch))):
             here = self.limits.members[color] & (modulo[:, branch] == self.limits.color[color])
@@ -152,9 +147,7 @@ class BuildResult(Drawn):
         """The surface with its slivers, where the sliver policy has given some up; else None."""
         if not self.slivers.any():
             return None
-        stages, links, coloring = self.stages, self.stages.links, self.stages.coloring
-        cracks = find_cracks(links.edges, links.linked, coloring)
-        limits = _limit_colors(self.prepared, stages, coloring, cracks, links)
+        limits = _limited(self.prepared, self.verdicts, self.all_colors)
         raw = replace(
             self.surface,
             colors=limits.names,
@@ -173,26 +166,19 @@ class BuildResult(Drawn):
         """
         if not self.limits.winding:
             return None
-        coloring, cracks = self.stages.cleaned.coloring, self.stages.cleaned.cracks
-        colors = [np.flatnonzero(row >= 0) for row in coloring.node_color]
-        rows = zip(coloring.node_color, colors, strict=True)
-        vertex_colors = tuple(tuple(sorted(row[own].tolist())) for row, own in rows)
-        return replace(
-            self.surface, colors=coloring.names, vertex_colors=vertex_colors, cracks=cracks
-        )
+        own = tuple(tuple(sorted(row[row >= 0].tolist())) for row in self.coloring.node_color)
+        cracks = self.coloring.cracks
+        return replace(self.surface, colors=self.coloring.names, vertex_colors=own, cracks=cracks)
 
     def without(self, mask: Mask) -> BuildResult:
         """The same scene with some vertices (n,) that are not to be covered, on purpose."""
         if self.left_alone is not None:
             mask = mask | self.left_alone
-        cleaned = self.stages.cleaned
-        node_color = np.where(mask[:, None], -1, cleaned.coloring.node_color)
+        node_color = np.where(mask[:, None], -1, self.coloring.node_color)
+        cracks = tuple(each for each in self.coloring.cracks if not (mask[each.i] or mask[each.j]))
+        coloring = replace(self.coloring, node_color=node_color, cracks=cracks)
         surface = self.surface.without_vertices(mask)
-        coloring = replace(cleaned.coloring, node_color=node_color)
-        cracks = [each for each in cleaned.cracks if not (mask[each.i] or mask[each.j])]
-        cleaned = replace(cleaned, coloring=coloring, cracks=tuple(cracks))
-        stages = replace(self.stages, cleaned=cleaned)
-        return replace(self, surface=surface, stages=stages, left_alone=mask)
+        return replace(self, surface=surface, coloring=coloring, left_alone=mask)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, BuildResult):
@@ -230,101 +216,128 @@ def build_surface(
 def build_prepared(prepared: PreparedScene, clock: StageClock) -> BuildResult:
     """Compute which colors reach each point of a scene that is in place.
 
+    A scene may say how far its part may be off
+    (:class:`~cellcolor.frontend.parts.placement.Tolerance`). Then a candidate is valid only if its
+    branch is valid at every displacement of a sample, and a branch leads along a mesh edge only if
+    it does at each. Whoever follows the colors of what is left has a motion in the same branches
+    wherever the sample puts the part.
+
     Raises:
-        InputError: the scene asks for too much; names file and field.
+        InputError: there are too many vertices for the turns of the tool; a displaced part stands
+            in a link that cannot move; a tolerance asks for an arm whose solutions have names.
         OutOfTime: the clock's deadline came first.
     """
     with naming(prepared.scene.file):
-        return result_of(prepared, judged(prepared, clock), clock)
+        verdicts, continuous, linked = _judged(prepared, clock)
+        if prepared.scene.tolerance is not None:
+            if not prepared.arm.named:
+                message = (
+                    "the solutions of this arm have no names, and are told apart on the part where "
+                    "it stands: a scene with a tolerance needs an arm whose solutions have names"
+                )
+                raise InputError(None, "robot.kinematics", message)
+            held = verdicts.valid
+            for there in prepared.displaced():
+                found, leads, leads_validly = _judged(there, clock)
+                held = held & found.valid
+                continuous, linked = continuous & leads, linked & leads_validly
+            verdicts = _with_reason(verdicts, verdicts.valid & ~held, OFF)
+        return colored(prepared, verdicts, continuous, linked, clock)
 
 
-def result_of(prepared: PreparedScene, stages: Stages, clock: StageClock) -> BuildResult:
-    """A labelled surface and its report, from what the stages of a build have made.
+def judged_at_vertices(prepared: PreparedScene, clock: StageClock) -> Verdicts:
+    """The verdicts (n, branches) on all candidates, whatever lies between the vertices.
+
+    Raises:
+        InputError: there are too many vertices for the turns of the tool.
+    """
+    turn, surface = prepared.setup.task.turn, prepared.surface
+    if turn is not None:
+        with naming(prepared.setup.file):
+            check_turns(len(surface.vertices), len(turn.degrees))
+    with clock.timed("inverse kinematics"):
+        solutions = prepared.arm.inverse(surface.vertices, -surface.normals, clock.deadline)
+    with clock.timed("validity at the vertices"):
+        verdicts = prepared.judge(solutions, clock.deadline)
+    if turn is None:
+        return verdicts
+    undefined = prepared.arm.without_turn(surface.vertices, -surface.normals)
+    return _with_reason(verdicts, undefined, TURN_NOT_DEFINED)
+
+
+def _judged(prepared: PreparedScene, clock: StageClock) -> tuple[Verdicts, Mask, Mask]:
+    """The verdicts on all candidates with the part where it stands; which links (edges, branches)
+    are continuous, and which of them are valid between the vertices as well."""
+    verdicts = judged_at_vertices(prepared, clock)
+    with clock.timed("continuity"):
+        edges = prepared.surface.edges()
+        continuous = continuous_along(prepared, edges, verdicts, clock.deadline)
+    with clock.timed("validity between vertices"):
+        linked = valid_along(prepared, verdicts, continuous, clock.deadline)
+    return verdicts, continuous, linked
+
+
+def _with_reason(verdicts: Verdicts, where: Mask, name: str) -> Verdicts:
+    """The verdicts with another reason at some candidates, or at some vertices."""
+    names, reasons = (*verdicts.reason_names, name), verdicts.reasons.copy()
+    reasons[where] = len(names) - 1
+    return replace(verdicts, reasons=reasons, reason_names=names)
+
+
+def colored(
+    prepared: PreparedScene, verdicts: Verdicts, continuous: Mask, linked: Mask, clock: StageClock
+) -> BuildResult:
+    """A labelled surface, from what the tests have found.
 
     Args:
-        prepared: the scene, with the surface that the stages were asked about.
+        verdicts: on all candidates.
+        continuous: (edges, branches) along which mesh edges a branch moves without a jump.
+        linked: those that are valid between the vertices as well.
         clock: the time they have taken.
     """
-    clock.begin("report")
-    surface, limits = labelled(prepared, stages, clock.seconds)
+    surface, branches = prepared.surface, prepared.arm.kinematics.branches
+    with clock.timed("colors and cracks"):
+        edges, policy, report = surface.edges(), prepared.setup.slivers, None
+        coloring = all_colors = color_nodes(verdicts.valid, edges, linked, branches)
+        clock.deadline.check()
+        if policy is not None:
+            areas = surface.vertex_areas()
+            kept, report = clean(edges, all_colors, areas, policy, clock.deadline)
+            coloring = color_nodes(kept, edges, linked & kept[edges].all(axis=1), branches)
+    clock.begin("surface")
+    limits = _limited(prepared, verdicts, coloring)
     clock.deadline.check()
-    report = _report(prepared, stages, limits, clock.seconds)
-    clock.deadline.check()
-    return BuildResult(surface, report, stages, prepared, limits)
-
-
-def labelled(
-    prepared: PreparedScene, stages: Stages, seconds: dict[str, float]
-) -> tuple[LabelledSurface, LimitColors]:
-    """The labelled surface of a scene, with the seconds that each stage took, and its colors."""
-    cleaned = stages.cleaned
-    limits = _limit_colors(prepared, stages, cleaned.coloring, cleaned.cracks, cleaned.links)
-    surface = LabelledSurface(
+    lost = verdicts.valid.any(axis=1) & (coloring.node_color < 0).all(axis=1)
+    labelled = LabelledSurface(
         name=prepared.scene.name,
         colors=limits.names,
-        vertices=prepared.surface.vertices,
-        faces=prepared.surface.faces,
-        vertex_colors=_vertex_colors(limits, len(prepared.surface.vertices)),
+        vertices=surface.vertices,
+        faces=surface.faces,
+        vertex_colors=_vertex_colors(limits, len(surface.vertices)),
         cracks=limits.cracks,
-        meta=_meta(prepared.scene, stages, seconds),
-        given_up=_given_up(stages.candidates.valid, cleaned.coloring),
+        meta=_meta(prepared.scene, report, clock.seconds),
+        given_up=tuple(np.flatnonzero(lost).tolist()),
     )
-    return surface, limits
+    clock.deadline.check()
+    return BuildResult(
+        surface=labelled,
+        prepared=prepared,
+        verdicts=verdicts,
+        continuous=continuous,
+        all_colors=all_colors,
+        coloring=coloring,
+        slivers_report=report,
+        limits=limits,
+        seconds=clock.seconds,
+    )
 
 
-def _limit_colors(
-    prepared: PreparedScene, stages: Stages, coloring: Coloring, cracks: Cracks, links: Links
-) -> LimitColors:
+def _limited(prepared: PreparedScene, verdicts: Verdicts, coloring: Coloring) -> LimitColors:
     robot = prepared.robot
     if not prepared.setup.constraints.collision:  # joint limits are not asked about either
         nowhere = np.full(robot.joints, np.inf)
         robot = replace(robot, lower=-nowhere, upper=nowhere)
-    configurations = stages.candidates.configurations
-    return limit_colors(robot, coloring, cracks, configurations, links.edges, links.linked)
-
-
-def _report(
-    prepared: PreparedScene, stages: Stages, limits: LimitColors, seconds: dict[str, float]
-) -> BuildReport:
-    surface, candidates, cleaned = prepared.surface, stages.candidates, stages.cleaned
-    areas, names = surface.vertex_areas(), candidates.reason_names
-    reached = candidates.valid.any(axis=1)
-    # Codes are in the order of the tests.
-    farthest = candidates.reasons.max(axis=1)[~reached]
-    remarks = prepared.kinematics.remarks(surface.vertices, -surface.normals)
-    return BuildReport(
-        survey=survey_of(prepared),
-        vertices=len(areas),
-        reachable=int(reached.sum()),
-        area_m2=float(areas.sum()),
-        reachable_area_m2=float(areas[reached].sum()),
-        candidates=count_reasons(candidates.reasons.ravel(), names),
-        unreachable=count_reasons(farthest, names, 1),
-        colors=color_reports(surface, cleaned.coloring, stages.branches),
-        cracks=len(cleaned.cracks),
-        seconds=seconds,
-        notes=prepared.notes + remarks,
-        stand_ins=tuple(map(report_on, prepared.robot.stand_ins)),
-        slivers=cleaned.report,
-        injectivity=None if prepared.arm.named else _INJECTIVE,
-        rounding=_rounding_in_words(prepared.setup.task) if surface.faceted else None,
-        limits=_limits_in_words(limits) if limits.positions else None,
-    )
-
-
-def _limits_in_words(limits: LimitColors) -> str:
-    divided = {limits.color[color] for color in limits.positions}
-    text = f"{count(len(divided), 'color')} divided, so that each keeps the joint limits"
-    if limits.winding:
-        text += f"; {len(limits.winding)} of them cut, as they wind around"
-    return text
-
-
-def _rounding_in_words(task: Task) -> str:
-    """Over what normals are rounded."""
-    radius = task.rounding_m
-    key = "contact_radius_m" if task.edge_radius_m is None else "edge_radius_m"
-    return f"rounded over {1e3 * radius:g} mm (task.{key})"
+    return limit_colors(robot, coloring, verdicts.configurations, prepared.surface.edges())
 
 
 def _vertex_colors(limits: LimitColors, vertices: int) -> tuple[tuple[int, ...], ...]:
@@ -332,16 +345,11 @@ def _vertex_colors(limits: LimitColors, vertices: int) -> tuple[tuple[int, ...],
     return tuple(tuple(np.flatnonzero(own).tolist()) for own in members)
 
 
-def _given_up(valid: Mask, coloring: Coloring) -> tuple[int, ...]:
-    """The vertices that are reachable and were left without any color."""
-    lost = valid.any(axis=1) & (coloring.node_color < 0).all(axis=1)
-    return tuple(np.flatnonzero(lost).tolist())
-
-
-def _meta(scene: Scene, stages: Stages, seconds: dict[str, float]) -> dict[str, Any]:
+def _meta(
+    scene: Scene, slivers: SliverReport | None, seconds: Mapping[str, float]
+) -> dict[str, Any]:
     packages = ("pin", "coal", "trimesh", "numpy")
     versions = {package: importlib.metadata.version(package) for package in packages}
-    slivers = stages.cleaned.report
     return {
         "scene": scene.model_dump(mode="json"),
         # How the arm moves later has no part in what a surface is.

@@ -1,8 +1,7 @@
 """A prepared scene: arm, part, obstacles and tests, read and put in place.
 
-The arm (`PreparedArm`), its surroundings and the part are kept separately, the part in its own
-frame. So the same part can be tested in another place (:meth:`PreparedScene.at`) without reading
-or building anything again.
+The part is kept in its own frame as well. So the same part can be tested in another place
+(:meth:`PreparedScene.at`) without reading or building anything again.
 """
 
 from __future__ import annotations
@@ -13,14 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
-from cellcolor.frontend.arm.far_shapes import notes_on_shapes
-from cellcolor.frontend.arm.inverse import InverseKinematics
+from cellcolor.frontend.arm.far_shapes import notes_on_shapes, too_large
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.shape import Shape
-from cellcolor.frontend.contact.engine import Contacts, pairs_of
+from cellcolor.frontend.contact.engine import Contacts, always_touching, pairs_of
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_units
 from cellcolor.frontend.parts.inspection import note_on_crossings
@@ -28,13 +25,11 @@ from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.rounding import note_on_triangles
 from cellcolor.frontend.parts.sides import note_on_shell
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.reach.always_touching import always_touching
 from cellcolor.frontend.reach.prepared_arm import PreparedArm, prepare_arm
 from cellcolor.frontend.reach.sheets import in_sheets
 from cellcolor.frontend.reach.validity import Judge
 from cellcolor.frontend.reach.validity_tests import Workplace
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.sizes import check_points
 
 
@@ -54,47 +49,30 @@ class PreparedPart:
 
 
 @dataclass(frozen=True, eq=False)
-class PreparedScene:
+class PreparedScene(Workplace):
     """A scene, ready for questions about configurations.
 
     Attributes:
-        workplace: the arm and its surroundings.
         part: in its own frame.
         surface: the surface to be covered, in the world.
-        judge: the tests.
         notes: likely mistakes in robot and mesh, one sentence each.
+        left_out: names of tests that are not made.
     """
 
     scene: Scene
-    workplace: Workplace
     part: PreparedPart
     surface: Surface
-    judge: Judge
-    notes: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+    left_out: frozenset[str] = frozenset()
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Models of Pinocchio's cannot be pickled: where it is unpickled the scene is read again.
         return _prepared_on, (self.scene, self.surface)
 
     @property
-    def setup(self) -> Setup:
-        """The scene's."""
-        return self.scene.setup
-
-    @property
-    def arm(self) -> PreparedArm:
-        """The arm and its task, without its surroundings."""
-        return self.workplace.arm
-
-    @property
-    def robot(self) -> Robot:
-        """Arm and tool."""
-        return self.arm.robot
-
-    @property
-    def kinematics(self) -> InverseKinematics:
-        """The arm's inverse kinematics."""
-        return self.arm.kinematics
+    def judge(self) -> Judge:
+        """The tests."""
+        return Judge(self, self.scene.validity_test, self.left_out)
 
     def at(self, placement: Placement) -> PreparedScene:
         """The same scene with the part standing elsewhere; only the part is moved.
@@ -102,7 +80,8 @@ class PreparedScene:
         Raises:
             InputError: the part stands in a link that cannot move, or much too far away.
         """
-        return self._standing(self.scene.varied(placement=placement), self.workplace)
+        moved = replace(self, scene=self.scene.varied(placement=placement))
+        return named(_in_place(moved))
 
     def amid(self, scene: Scene) -> PreparedScene:
         """The same arm and part in a scene that differs in placement, obstacles and ground only.
@@ -111,13 +90,8 @@ class PreparedScene:
             InputError: an obstacle cannot be used, or the part stands in a link that cannot move,
                 or much too far away.
         """
-        return self._standing(scene, _around(scene, self.arm, self.part, NEVER))
-
-    def _standing(self, scene: Scene, around: Workplace) -> PreparedScene:
-        surface, workplace = _in_place(scene, self.part, around)
-        check_part(surface, scene, self.kinematics.reach, self.robot.base_frame(None)[:3, 3])
-        judge = Judge(workplace, scene.validity_test)
-        return named(PreparedScene(scene, workplace, self.part, surface, judge, self.notes))
+        around = _surroundings(scene, self.arm, NEVER)
+        return named(_in_place(replace(self, scene=scene, **around)))
 
     def displaced(self) -> list[PreparedScene]:
         """The scene without its tolerance, with the part wherever its sample puts it.
@@ -161,27 +135,31 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     setup = scene.setup
     arm = prepare_arm(setup)
     covered = scene.covered(deadline)
-    surface = covered.placed(scene.placement)
-    check_part(surface, scene, arm.kinematics.reach, arm.robot.base_frame(None)[:3, 3])
+    surface, reach = covered.placed(scene.placement), arm.kinematics.reach
+    check_part(surface, scene, reach, arm.robot.base_frame(None)[:3, 3])
     lengths = surface.lengths(surface.edges())
     with naming(setup.file):
-        check_setup(setup, surface, scene, arm.kinematics.reach)
-        _check_spacings(setup, lengths)
+        check_setup(setup, surface, scene, reach)
+        for key in ("probe_spacing_m", "validity_spacing_m"):
+            spacing = getattr(setup.continuity, key)
+            if spacing is not None:
+                check_points(lengths, spacing, f"continuity.{key}")
     shape = covered
     if scene.solid_object is not None:
         shape = scene.solid_object.surface(scene.folder, deadline)
     body = Shape("mesh", vertices=shape.vertices, faces=shape.faces)
     part = PreparedPart(covered, body, bool(shape.mesh.border.any()))
-    _, workplace = _in_place(scene, part, _around(scene, arm, part, deadline))
-    judge = Judge(workplace, scene.validity_test)
-    notes = arm.robot.warnings + notes_on_shapes(arm.robot)
-    notes += notes_on_units(scene, arm.kinematics.reach)
+    around = _surroundings(scene, arm, deadline)
+    prepared = _in_place(
+        PreparedScene(arm=arm, target=body, scene=scene, part=part, surface=surface, **around)
+    )
+    notes = arm.robot.warnings + notes_on_shapes(arm.robot) + notes_on_units(scene, reach)
     if covered.faceted:  # a shape is made without
         notes += note_on_crossings(covered.mesh) + note_on_shell(covered)
         notes += note_on_triangles(surface, setup.task.rounding_m)
     if setup.constraints.collision:
-        notes += _notes_on_contacts(workplace, float(lengths.max()))
-    return named(PreparedScene(scene, workplace, part, surface, judge, notes), deadline)
+        notes += _notes_on_contacts(prepared, float(lengths.max()))
+    return named(replace(prepared, notes=notes), deadline)
 
 
 def named(prepared: PreparedScene, deadline: Deadline = NEVER) -> PreparedScene:
@@ -193,29 +171,34 @@ def named(prepared: PreparedScene, deadline: Deadline = NEVER) -> PreparedScene:
     if prepared.arm.named:
         return prepared
     arm = in_sheets(prepared.arm, prepared.surface, prepared.judge, deadline)
-    return replace(prepared, workplace=replace(prepared.workplace, arm=arm))
+    return replace(prepared, arm=arm)
 
 
-def _around(scene: Scene, arm: PreparedArm, part: PreparedPart, deadline: Deadline) -> Workplace:
-    """An arm with obstacles and ground; the part is in its own frame yet."""
-    obstacles = [obstacle.solid(scene.folder, deadline) for obstacle in scene.obstacle]
+def _surroundings(scene: Scene, arm: PreparedArm, deadline: Deadline) -> dict[str, Any]:
+    """What stands around an arm: obstacles, ground, and the room that they leave the tip."""
+    obstacles = tuple(obstacle.solid(scene.folder, deadline) for obstacle in scene.obstacle)
     ground = None if scene.ground is None else scene.ground.half_space
     tip = Tip(arm.robot, scene.setup.task.contact_radius_m, obstacles, ground)
-    return Workplace(arm, ground, tuple(obstacles), part.body, tip)
+    return {"obstacles": obstacles, "ground": ground, "tip": tip}
 
 
-def _in_place(scene: Scene, part: PreparedPart, around: Workplace) -> tuple[Surface, Workplace]:
-    """A part where its scene has it: what has to be covered, and the workplace with its body."""
+def _in_place(prepared: PreparedScene) -> PreparedScene:
+    """The part where its scene has it."""
+    scene, part, robot = prepared.scene, prepared.part, prepared.robot
     surface = part.surface.placed(scene.placement)
-    body, robot = scene.placement.standing(part.body), around.robot
+    check_part(surface, scene, prepared.arm.kinematics.reach, robot.base_frame(None)[:3, 3])
+    body = scene.placement.standing(part.body)
     margin = scene.setup.margins.to_object_m
     fixed = [each for each in robot.bodies if each.joint == 0 and scene.setup.constraints.collision]
     for each in fixed:
         if Contacts([(each, body, margin)], robot)(np.zeros((1, robot.joints)))[0]:
+            why = too_large(robot, each)
+            if why is not None:
+                raise InputError(str(robot.files[0]), f"link[{each.link}].collision", why)
             wider = f", or nearer than {margin:g} m (margins.to_object_m)" if margin else ""
             message = f"the object stands in the robot's {each.link!r}{wider}"
             raise InputError(None, "placement", message)
-    return surface, replace(around, target=body)
+    return replace(prepared, surface=surface, target=body)
 
 
 def _prepared_on(scene: Scene, surface: Surface) -> PreparedScene:
@@ -223,7 +206,7 @@ def _prepared_on(scene: Scene, surface: Surface) -> PreparedScene:
     return replace(prepare(scene), surface=surface)
 
 
-def _notes_on_contacts(place: Workplace, longest: float) -> tuple[str, ...]:
+def _notes_on_contacts(place: PreparedScene, longest: float) -> tuple[str, ...]:
     """Likely mistakes in the collision shapes; ``longest`` edge of the mesh in m."""
     robot, found = place.robot, []
     margin = place.setup.margins.between_links_m
@@ -263,10 +246,3 @@ def _too_coarse(robot: Robot, obstacles: tuple[Shape, ...], longest: float) -> s
         f"the object's edges are up to {longest:.3g} m long and {name} is {width:.3g} m wide: "
         "between vertices something can stand unnoticed (max_edge_m, target_vertices)"
     )
-
-
-def _check_spacings(setup: Setup, lengths: Array) -> None:
-    for key in ("probe_spacing_m", "validity_spacing_m"):
-        spacing = getattr(setup.continuity, key)
-        if spacing is not None:
-            check_points(lengths, spacing, f"continuity.{key}")

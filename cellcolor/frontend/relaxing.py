@@ -1,403 +1,272 @@
 """Restrictions of an arm in a scene, and the scene with one limit, obstacle or test less.
 
-Each kind of :class:`Relaxation` takes one thing out of a prepared scene. Whatever was valid before
-is valid after it, so only candidates that failed for its reason are tested again
+Each :class:`Relaxation` takes one thing out of a prepared scene. Whatever was valid before is valid
+after it, so only candidates that failed for its reason are tested again
 (:mod:`~cellcolor.frontend.judging_again`). :func:`relaxations_of` lists all of a scene.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from itertools import compress
 from math import degrees
-from typing import ClassVar, Self
+from typing import Any
 
 import numpy as np
 
-from cellcolor.frontend.arm.shape import Shape
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.prepared import PreparedScene, named
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
-from cellcolor.frontend.reach.validity import Judge
-from cellcolor.frontend.reach.validity_tests import Workplace
+
+Apply = Callable[[PreparedScene, float], PreparedScene]
+"""A scene, and by how much the restriction is weakened, infinite if it is left out: the scene with
+that."""
 
 
 @dataclass(frozen=True)
-class Relaxation(ABC):
+class Relaxation:
     """One restriction of a scene, which can be left out or weakened.
 
     Attributes:
-        amount: by how much it is weakened, in units; infinite if it is left out.
+        name: for people, as in "without the ground".
+        key: where scene, setup or URDF define it.
+        apply: the scene without it.
         reasons: the tests that it can make a candidate fail. None if bodies change, so that
             everything has to be tested again.
-        unit: of amounts, ``None`` where the thing is there or not.
-        most: the largest amount worth trying.
+        most: the largest amount worth trying, in rad, m or %; 0 where the thing is there or not.
+        said_of: an amount in words, as in "ground lower by 12 mm".
+        moves: whether what is weakened may block what was valid before.
         finest: the smallest share of the most to try, and the halvings between enough and too
             little.
+        parts: what it can be split into.
+        amount: by how much it is weakened; infinite if it is left out.
     """
 
-    amount: float = field(default=np.inf, kw_only=True)
-    reasons: ClassVar[frozenset[str] | None]
-    unit: ClassVar[str | None] = None
-    most: ClassVar[float] = 0.0
-    finest: ClassVar[tuple[int, int]] = (512, 4)
-
-    @property
-    @abstractmethod
-    def name(self) -> str:
-        """For people, as in "without the ground"."""
-
-    @property
-    @abstractmethod
-    def key(self) -> str:
-        """Where scene, setup or URDF define it."""
-
-    @abstractmethod
-    def applied(self, prepared: PreparedScene) -> PreparedScene:
-        """The scene without it."""
-
-    def by(self, amount: float) -> Self:
-        """The same, relaxed by an amount only."""
-        return self if self.unit is None else replace(self, amount=amount)
-
-    def said_of(self, amount: float) -> str:
-        """An amount in words, as in "limits of joint_4 wider by 12°"."""
-        return f"{self.name}: {amount:.3g} {self.unit}"
-
-    def parts(self, prepared: PreparedScene) -> tuple[Relaxation, ...]:  # noqa: ARG002
-        """Its parts, if it can be split."""
-        return ()
-
-
-class _WholeTest(Relaxation):
-    """A restriction that is a test, left out."""
-
-    reasons: ClassVar[frozenset[str]]
-
-    def applied(self, prepared: PreparedScene) -> PreparedScene:
-        return _remade(prepared, prepared.workplace, self.reasons)
-
-
-@dataclass(frozen=True)
-class JointRange(Relaxation):
-    """The limits of one joint, which then turns or slides as far as it has to."""
-
-    joint: str
-    reasons = frozenset({"joint limits"})
-    unit = "rad"
-    most = 2 * np.pi  # a full circle on both sides
-
-    @property
-    def name(self) -> str:
-        return f"limits of {self.joint}"
-
-    @property
-    def key(self) -> str:
-        return f"joint[{self.joint}].limit"
-
-    def said_of(self, amount: float) -> str:
-        return f"{self.name} wider by {degrees(amount):.3g}° on both sides"
-
-    def applied(self, prepared: PreparedScene) -> PreparedScene:
-        robot = prepared.robot
-        here = np.array([name == self.joint for name in robot.joint_names])
-        lower = np.where(here, robot.lower - self.amount, robot.lower)
-        upper = np.where(here, robot.upper + self.amount, robot.upper)
-        arm = replace(prepared.arm, robot=replace(robot, lower=lower, upper=upper))
-        return _remade(prepared, replace(prepared.workplace, arm=arm))
-
-
-@dataclass(frozen=True)
-class LinkContact(Relaxation):
-    """Two links that may not touch each other, or all that may not."""
-
-    pair: tuple[str, str] | None
-    reasons = frozenset({"self collision"})
-    key = "robot.may_touch"
-
-    @property
-    def name(self) -> str:
-        return "contact between " + (" and ".join(self.pair) if self.pair else "links")
-
-    def applied(self, prepared: PreparedScene) -> PreparedScene:
-        robot = prepared.robot
-        pairs = tuple(
-            (i, j)
-            for i, j in robot.tested_pairs
-            if self.pair and {robot.bodies[i].link, robot.bodies[j].link} != set(self.pair)
-        )
-        arm = replace(prepared.arm, robot=replace(robot, tested_pairs=pairs))
-        return _remade(prepared, replace(prepared.workplace, arm=arm))
-
-    def parts(self, prepared: PreparedScene) -> tuple[LinkContact, ...]:
-        """Each pair of links of a scene."""
-        robot = prepared.robot
-        links = [(robot.bodies[i].link, robot.bodies[j].link) for i, j in robot.tested_pairs]
-        return tuple(LinkContact(pair) for pair in dict.fromkeys(links))
-
-
-@dataclass(frozen=True)
-class Torques(_WholeTest):
-    """The efforts of the joints: the constraint ``force``."""
-
-    reasons = frozenset({"torque"})
-    name = "joint torques"
-    key = "constraints.force"
-
-
-_OF_THRESHOLD = {
-    "min_manipulability": "manipulability",
-    "min_task_determinant": "task determinant",
-}
-
-
-@dataclass(frozen=True)
-class Threshold(Relaxation):
-    """A threshold of conditioning, as a share or in m^3 (``given``)."""
-
-    threshold: str
-    given: str
-    unit = "%"
-    most = 100.0
-
-    @property
-    def reasons(self) -> frozenset[str]:  # type: ignore[override]
-        """The test that it belongs to."""
-        return frozenset({_OF_THRESHOLD[self.threshold]})
-
-    @property
-    def name(self) -> str:
-        return f"threshold of the {_OF_THRESHOLD[self.threshold]}"
-
-    @property
-    def key(self) -> str:
-        return f"thresholds.{self.given}"
-
-    def said_of(self, amount: float) -> str:
-        return f"{self.name} lower by {amount:.3g} %"
-
-    def applied(self, prepared: PreparedScene) -> PreparedScene:
-        least = prepared.arm.conditioning
-        kept = max(1 - self.amount / 100, 0.0)
-        lowered = {self.threshold: kept * getattr(least, self.threshold)}
-        arm = replace(prepared.arm, conditioning=replace(least, **lowered))
-        return _remade(prepared, replace(prepared.workplace, arm=arm))
-
-
-@dataclass(frozen=True)
-class GroundPlane(Relaxation):
-    """The ground."""
-
-    reasons = frozenset({"ground", "tip blocked"})
-    unit = "m"
-    most = 1.0  # few arms reach farther down
-    name = "ground"
-    key = "ground"
-
-    def said_of(self, amount: float) -> str:
-        return f"ground lower by {1e3 * amount:.3g} mm"
-
-    def applied(self, prepared: PreparedScene) -> PreparedScene:
-        place, ground = prepared.workplace, None
-        if np.isfinite(self.amount) and place.ground is not None:
-            ground = replace(place.ground, offset_m=place.ground.offset_m - self.amount)
-        return _remade(prepared, _around(replace(place, ground=ground)))
-
-
-@dataclass(frozen=True)
-class ObstacleBody(Relaxation):
-    """One of the obstacles, numbered from 1; gone, or farther from the part."""
-
-    number: int
-    kind: str
-    unit = "m"
-    most = 0.5  # beyond that distance it might as well be gone
-
-    @property
-    def reasons(self) -> frozenset[str] | None:  # type: ignore[override]
-        """A moved obstacle may block configurations that were valid before."""
-        return frozenset({"obstacle collision", "tip blocked"}) if self.amount == np.inf else None
-
-    @property
-    def name(self) -> str:
-        """With the kind that the scene's file gives it."""
-        return f"obstacle {self.number} ({self.kind})"
-
-    @property
-    def key(self) -> str:
-        return f"obstacle[{self.number - 1}]"
-
-    def said_of(self, amount: float) -> str:
-        return f"{self.name} {1e3 * amount:.3g} mm farther from the part"
-
-    def applied(self, prepared: PreparedScene) -> PreparedScene:
-        """Without it, or with it moved straight away from the middle of the part's surface."""
-        place, scene, here = prepared.workplace, prepared.scene, self.number - 1
-        moved: tuple[Shape, ...] = ()
-        if self.amount < np.inf:
-            obstacle = scene.obstacle[here]
-            vertices, _ = obstacle.shell(scene.folder)
-            middle = obstacle.placed(vertices).mean(axis=0)
-            away = middle - np.average(
-                prepared.surface.vertices, axis=0, weights=prepared.surface.vertex_areas()
-            )
-            step = self.amount * away / max(float(np.linalg.norm(away)), 1e-9)
-            position = tuple((np.array(obstacle.position_m) + step).tolist())
-            there = obstacle.model_copy(update={"position_m": position})
-            moved = (there.solid(scene.folder),)
-        left = (*place.obstacles[:here], *moved, *place.obstacles[here + 1 :])
-        return _remade(prepared, _around(replace(place, obstacles=left)))
-
-
-@dataclass(frozen=True)
-class PartBody(_WholeTest):
-    """The part itself, as a body that links and tool must not hit."""
-
-    reasons = frozenset({"object collision"})
-    name = "contact of arm and tool with the part"
-    key = "object"
-
-
-@dataclass(frozen=True)
-class ToolBody(Relaxation):
-    """The tool's body; where the tool works is kept free as before."""
-
-    links: frozenset[str]
-    reasons = None
-    name = "tool's body"
-    key = "robot.tool_urdf"
-
-    def applied(self, prepared: PreparedScene) -> PreparedScene:
-        robot = prepared.robot
-        kept = [i for i, body in enumerate(robot.bodies) if body.link not in self.links]
-        number = {old: new for new, old in enumerate(kept)}
-        slim = replace(
-            robot,
-            bodies=tuple(robot.bodies[i] for i in kept),
-            tested_pairs=tuple(
-                (number[i], number[j]) for i, j in robot.tested_pairs if {i, j} <= number.keys()
-            ),
-        )
-        arm = replace(prepared.arm, robot=slim)
-        return _remade(prepared, replace(prepared.workplace, arm=arm))
-
-
-@dataclass(frozen=True)
-class ToolLength(Relaxation):
-    """A longer tool: the tip farther along the tool's axis, the tool's body as it is.
-
-    The tip's room reaches from the body to the tip, so it grows with the tool. What was valid need
-    not be valid with another tool.
-    """
-
-    amount: float = field(default=0.04, kw_only=True)
-    reasons = None
-    unit = "m"
-    finest = (8, 1)  # each amount takes a whole build
-    name = "length of the tool"
-    key = "task.stand_off_m"
-    most = 0.04
-
-    def said_of(self, amount: float) -> str:
-        return f"tool {1e3 * amount:.3g} mm longer"
-
-    def applied(self, prepared: PreparedScene) -> PreparedScene:
-        """With a larger stand-off, which is where the tip link ends."""
-        longer = prepared.setup.task.stand_off_m + self.amount
-        setup = prepared.setup.varied(task={"stand_off_m": longer})
-        place = _around(replace(prepared.workplace, arm=prepare_arm(setup)))
-        return _remade(replace(prepared, scene=prepared.scene.with_setup(setup)), place)
-
-
-@dataclass(frozen=True)
-class Distance(Relaxation):
-    """A distance that arm and tool keep (``margins`` of the setup), down to a touch."""
-
-    margin: str
-    reasons = None
-
-    @property
-    def name(self) -> str:
-        return f"distance {self.margin.removesuffix('_m').replace('_', ' ')}"
-
-    @property
-    def key(self) -> str:
-        return f"margins.{self.margin}"
-
-    def applied(self, prepared: PreparedScene) -> PreparedScene:
-        setup = prepared.arm.setup.varied(margins={self.margin: 0.0})
-        arm = replace(prepared.arm, setup=setup)
-        return _remade(prepared, replace(prepared.workplace, arm=arm))
-
-
-@dataclass(frozen=True)
-class AddedTest(_WholeTest):
-    """A test of validity that the scene adds."""
-
-    test: str
-    key = "validity_test"
-
-    @property
-    def reasons(self) -> frozenset[str]:  # type: ignore[override]
-        """Its own."""
-        return frozenset({self.test})
-
-    @property
-    def name(self) -> str:
-        return f"test of {self.test}"
-
-
-def _remade(
-    prepared: PreparedScene, place: Workplace, left_out: frozenset[str] = frozenset()
-) -> PreparedScene:
-    """The scene with another workplace, and with fewer tests."""
-    left_out |= prepared.judge.left_out
-    judge = Judge(place, prepared.scene.validity_test, left_out)
-    return named(replace(prepared, workplace=place, judge=judge))
-
-
-def _around(place: Workplace) -> Workplace:
-    """The workplace, the room at the tool's tip told what stands around."""
-    tip = Tip(place.robot, place.tip.body.radius, list(place.obstacles), place.ground)
-    return replace(place, tip=tip)
+    name: str
+    key: str
+    apply: Apply = field(compare=False, repr=False)
+    reasons: frozenset[str] | None = field(compare=False)
+    most: float = 0.0
+    said_of: Callable[[float], str] = field(default=str, compare=False, repr=False)
+    moves: bool = False
+    finest: tuple[int, int] = (512, 4)
+    parts: tuple[Relaxation, ...] = field(default=(), compare=False, repr=False)
+    amount: float = np.inf
+
+    def by(self, amount: float) -> Relaxation:
+        """The same, weakened by an amount only."""
+        return replace(self, amount=amount, reasons=None if self.moves else self.reasons)
+
+
+def without(prepared: PreparedScene, what: Iterable[Relaxation]) -> PreparedScene:
+    """The scene without several things."""
+    # The tool comes last: the tip learns of its surroundings from the bodies of the tool.
+    for one in sorted(what, key=lambda each: each.reasons is None):
+        prepared = one.apply(prepared, one.amount)
+    return prepared
 
 
 def relaxations_of(prepared: PreparedScene) -> tuple[Relaxation, ...]:
     """All that can be taken out of a scene, one by one; all contacts between links are one."""
-    place, robot, on = prepared.workplace, prepared.robot, prepared.setup.constraints
+    robot, on = prepared.robot, prepared.setup.constraints
     found: list[Relaxation] = []
     if on.collision:
-        found += [
-            ObstacleBody(number, str(getattr(one, "kind", type(one).__name__)))
-            for number, one in enumerate(prepared.scene.obstacle, 1)
-        ]
-        found += [] if place.ground is None else [GroundPlane()]
-        found.append(PartBody())
-        found += [ToolBody(robot.tool_links)] if robot.tool_links else []
+        found += [_obstacle(prepared, number) for number in range(len(prepared.obstacles))]
+        found += [] if prepared.ground is None else [_GROUND]
+        found.append(_test("object collision", "contact of arm and tool with the part", "object"))
+        found += [_tool_body(robot.tool_links)] if robot.tool_links else []
         limited = np.isfinite(robot.lower) | np.isfinite(robot.upper)
-        found += map(JointRange, compress(robot.joint_names, limited))
-        found += [LinkContact(None)] if robot.tested_pairs else []
+        found += map(_joint_range, compress(robot.joint_names, limited))
+        found += [_contact_of_links(prepared)] if robot.tested_pairs else []
         margins = prepared.setup.margins
-        found += [Distance(key) for key in type(margins).model_fields if getattr(margins, key)]
+        found += [_distance(key) for key in type(margins).model_fields if getattr(margins, key)]
     if on.force:
-        found.append(Torques())
+        found.append(_test("torque", "joint torques", "constraints.force"))
     if on.conditioning:
-        least = prepared.setup.thresholds
-        found += [
-            Threshold(name, name if getattr(least, name) is not None else f"{name}_m3")
-            for name in _OF_THRESHOLD
-            if getattr(prepared.arm.conditioning, name)
-        ]
+        for name in ("min_manipulability", "min_task_determinant"):
+            given = getattr(prepared.setup.thresholds, name) is not None
+            if getattr(prepared.arm.conditioning, name):
+                found.append(_threshold(name, name if given else f"{name}_m3"))
     names = dict.fromkeys(test.name for test in prepared.scene.validity_test)
-    return (*found, *(AddedTest(name) for name in names))
+    return (*found, *(_test(name, f"test of {name}", "validity_test") for name in names))
 
 
-def without(prepared: PreparedScene, what: Iterable[Relaxation]) -> PreparedScene:
-    """The scene without several things; obstacles are numbered as the scene has them."""
-    # From the last obstacle to the first, so that the numbers of those left stay. The tool comes
-    # last: the tip learns of its surroundings from the bodies of the tool.
-    for one in sorted(what, key=lambda each: (each.reasons is None, -getattr(each, "number", 0))):
-        prepared = one.applied(prepared)
-    return prepared
+def _test(test: str, name: str, key: str) -> Relaxation:
+    """A restriction that is a whole test."""
+
+    def applied(prepared: PreparedScene, _: float) -> PreparedScene:
+        return replace(prepared, left_out=prepared.left_out | {test})
+
+    return Relaxation(name, key, applied, frozenset({test}))
+
+
+def _with_arm(prepared: PreparedScene, **changes: Any) -> PreparedScene:
+    return named(replace(prepared, arm=replace(prepared.arm, **changes)))
+
+
+def _with_room(prepared: PreparedScene, **changes: Any) -> PreparedScene:
+    """The scene with other surroundings, of which the room at the tool's tip is told."""
+    there = replace(prepared, **changes)
+    tip = Tip(there.robot, there.tip.body.radius, there.obstacles, there.ground)
+    return named(replace(there, tip=tip))
+
+
+def _joint_range(joint: str) -> Relaxation:
+    """The limits of one joint, which then turns or slides as far as it has to."""
+
+    def applied(prepared: PreparedScene, amount: float) -> PreparedScene:
+        robot = prepared.robot
+        here = np.array([name == joint for name in robot.joint_names])
+        lower = np.where(here, robot.lower - amount, robot.lower)
+        upper = np.where(here, robot.upper + amount, robot.upper)
+        return _with_arm(prepared, robot=replace(robot, lower=lower, upper=upper))
+
+    return Relaxation(
+        f"limits of {joint}",
+        f"joint[{joint}].limit",
+        applied,
+        frozenset({"joint limits"}),
+        2 * np.pi,  # a full circle on both sides
+        lambda amount: f"limits of {joint} wider by {degrees(amount):.3g}° on both sides",
+    )
+
+
+def _contact_of_links(
+    prepared: PreparedScene, pair: frozenset[str] | None = None, words: str = "links"
+) -> Relaxation:
+    """Two links that may not touch each other, or all that may not, with each pair as a part."""
+
+    def links(here: PreparedScene) -> list[tuple[str, str]]:
+        bodies = here.robot.bodies
+        return [(bodies[i].link, bodies[j].link) for i, j in here.robot.tested_pairs]
+
+    def applied(here: PreparedScene, _: float) -> PreparedScene:
+        kept = [pair is not None and set(each) != pair for each in links(here)]
+        pairs = tuple(compress(here.robot.tested_pairs, kept))
+        return _with_arm(here, robot=replace(here.robot, tested_pairs=pairs))
+
+    parts = () if pair else dict.fromkeys(links(prepared))
+    return Relaxation(
+        f"contact between {words}",
+        "robot.may_touch",
+        applied,
+        frozenset({"self collision"}),
+        parts=tuple(_contact_of_links(prepared, frozenset(p), " and ".join(p)) for p in parts),
+    )
+
+
+def _threshold(threshold: str, given: str) -> Relaxation:
+    """A threshold of conditioning, as a share or in m^3 (``given``)."""
+
+    def applied(prepared: PreparedScene, amount: float) -> PreparedScene:
+        least, kept = prepared.arm.conditioning, max(1 - amount / 100, 0.0)
+        lowered = replace(least, **{threshold: kept * getattr(least, threshold)})
+        return _with_arm(prepared, conditioning=lowered)
+
+    test = threshold.removeprefix("min_").replace("_", " ")
+    return Relaxation(
+        f"threshold of the {test}",
+        f"thresholds.{given}",
+        applied,
+        frozenset({test}),
+        100.0,
+        lambda amount: f"threshold of the {test} lower by {amount:.3g} %",
+    )
+
+
+def _lowered(prepared: PreparedScene, amount: float) -> PreparedScene:
+    ground = prepared.ground
+    if ground is not None:
+        lower = replace(ground, offset_m=ground.offset_m - amount)
+        ground = lower if np.isfinite(amount) else None
+    return _with_room(prepared, ground=ground)
+
+
+_GROUND = Relaxation(
+    "ground",
+    "ground",
+    _lowered,
+    frozenset({"ground", "tip blocked"}),
+    1.0,  # few arms reach farther down
+    lambda amount: f"ground lower by {1e3 * amount:.3g} mm",
+)
+
+
+def _obstacle(prepared: PreparedScene, here: int) -> Relaxation:
+    """One of the obstacles, gone, or moved straight away from the middle of the part's surface."""
+    obstacle, body = prepared.scene.obstacle[here], prepared.obstacles[here]
+    name = f"obstacle {here + 1} ({getattr(obstacle, 'kind', type(obstacle).__name__)})"
+
+    def applied(there: PreparedScene, amount: float) -> PreparedScene:
+        kept = [each for each in there.obstacles if each is not body]
+        if np.isfinite(amount):
+            vertices, _ = obstacle.shell(there.scene.folder)
+            surface, middle = there.surface, obstacle.placed(vertices).mean(axis=0)
+            away = middle - np.average(surface.vertices, axis=0, weights=surface.vertex_areas())
+            step = amount * away / max(float(np.linalg.norm(away)), 1e-9)
+            position = tuple((np.array(obstacle.position_m) + step).tolist())
+            moved = obstacle.model_copy(update={"position_m": position})
+            kept.insert(here, moved.solid(there.scene.folder))
+        return _with_room(there, obstacles=tuple(kept))
+
+    return Relaxation(
+        name,
+        f"obstacle[{here}]",
+        applied,
+        frozenset({"obstacle collision", "tip blocked"}),
+        0.5,  # beyond that distance it might as well be gone
+        lambda amount: f"{name} {1e3 * amount:.3g} mm farther from the part",
+        moves=True,
+    )
+
+
+def _tool_body(links: frozenset[str]) -> Relaxation:
+    """The tool's body; where the tool works is kept free as before."""
+
+    def applied(prepared: PreparedScene, _: float) -> PreparedScene:
+        robot = prepared.robot
+        kept = [i for i, body in enumerate(robot.bodies) if body.link not in links]
+        number = {old: new for new, old in enumerate(kept)}
+        pairs = tuple(
+            (number[i], number[j]) for i, j in robot.tested_pairs if {i, j} <= number.keys()
+        )
+        bodies = tuple(robot.bodies[i] for i in kept)
+        return _with_arm(prepared, robot=replace(robot, bodies=bodies, tested_pairs=pairs))
+
+    return Relaxation("tool's body", "robot.tool_urdf", applied, None)
+
+
+def _distance(margin: str) -> Relaxation:
+    """A distance that arm and tool keep (``margins`` of the setup), down to a touch."""
+
+    def applied(prepared: PreparedScene, _: float) -> PreparedScene:
+        return _with_arm(prepared, setup=prepared.setup.varied(margins={margin: 0.0}))
+
+    name = f"distance {margin.removesuffix('_m').replace('_', ' ')}"
+    return Relaxation(name, f"margins.{margin}", applied, None)
+
+
+def _longer(prepared: PreparedScene, amount: float) -> PreparedScene:
+    """With a larger stand-off, which is where the tip link ends."""
+    longer = prepared.setup.task.stand_off_m + amount
+    setup = prepared.setup.varied(task={"stand_off_m": longer})
+    scene = prepared.scene.with_setup(setup)
+    return _with_room(prepared, scene=scene, arm=prepare_arm(setup))
+
+
+TOOL_LENGTH = Relaxation(
+    "length of the tool",
+    "task.stand_off_m",
+    _longer,
+    None,
+    0.04,
+    lambda amount: f"tool {1e3 * amount:.3g} mm longer",
+    finest=(8, 1),  # each amount takes a whole build
+    amount=0.04,
+)
+"""A longer tool: the tip farther along the tool's axis, the tool's body as it is.
+
+The tip's room reaches from the body to the tip, so it grows with the tool. What was valid need not
+be valid with another tool.
+"""

@@ -7,7 +7,9 @@ wound the wrong way would change.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import trimesh
@@ -18,14 +20,19 @@ from cellcolor.data.wording import count
 from cellcolor.frontend.arm.kinematics import frames_along
 from cellcolor.frontend.arm.shape import Shape
 from cellcolor.frontend.contact.engine import meet
-from cellcolor.frontend.contact.stand_in_report import StandInReport
+from cellcolor.frontend.contact.stand_in_report import StandInReport, measured
 from cellcolor.frontend.parts.sides import spread
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.continuity import Coloring
+from cellcolor.frontend.reach.limit_colors import LimitColors
 from cellcolor.frontend.reach.slivers import SliverReport
 from cellcolor.frontend.reach.validity_tests import STANDARD_TESTS
+from cellcolor.frontend.setup import Task
 from cellcolor.mesh.triangle_mesh import TriangleMesh
+
+if TYPE_CHECKING:
+    from cellcolor.frontend.build import BuildResult
 
 _REMEDIES = {
     "no solution": "move the part nearer to the robot, or turn it towards the tool",
@@ -77,7 +84,7 @@ class BuildReport:
     unreachable: dict[str, int]
     colors: tuple[ColorReport, ...]
     cracks: int
-    seconds: dict[str, float]
+    seconds: Mapping[str, float]
     notes: tuple[str, ...]
     stand_ins: tuple[StandInReport, ...] = ()
     slivers: SliverReport | None = None
@@ -153,7 +160,55 @@ def _table(title: str, counts: dict[str, int]) -> list[str]:
     return [title] + [f"  {reason:<18} {number:>7}" for reason, number in counts.items()]
 
 
-def color_reports(
+_INJECTIVE = (
+    "solutions have no names and are distinguished by continuity; a color with two configurations "
+    "on one vertex: none found on this part"
+)
+
+
+def report_on(built: BuildResult) -> BuildReport:
+    """What a build found."""
+    prepared, verdicts, limits = built.prepared, built.verdicts, built.limits
+    surface, names = prepared.surface, verdicts.reason_names
+    areas, reached = surface.vertex_areas(), verdicts.valid.any(axis=1)
+    # Codes are in the order of the tests.
+    farthest = verdicts.reasons.max(axis=1)[~reached]
+    remarks = prepared.arm.kinematics.remarks(surface.vertices, -surface.normals)
+    return BuildReport(
+        survey=survey_of(prepared),
+        vertices=len(areas),
+        reachable=int(reached.sum()),
+        area_m2=float(areas.sum()),
+        reachable_area_m2=float(areas[reached].sum()),
+        candidates=_count_reasons(verdicts.reasons.ravel(), names),
+        unreachable=_count_reasons(farthest, names, 1),
+        colors=_color_reports(surface, built.coloring, built.branches),
+        cracks=len(built.coloring.cracks),
+        seconds=built.seconds,
+        notes=prepared.notes + remarks,
+        stand_ins=tuple(map(measured, prepared.robot.stand_ins)),
+        slivers=built.slivers_report,
+        injectivity=None if prepared.arm.named else _INJECTIVE,
+        rounding=_rounding_in_words(prepared.setup.task) if surface.faceted else None,
+        limits=_limits_in_words(limits) if limits.positions else None,
+    )
+
+
+def _limits_in_words(limits: LimitColors) -> str:
+    divided = {limits.color[color] for color in limits.positions}
+    text = f"{count(len(divided), 'color')} divided, so that each keeps the joint limits"
+    if limits.winding:
+        text += f"; {len(limits.winding)} of them cut, as they wind around"
+    return text
+
+
+def _rounding_in_words(task: Task) -> str:
+    """Over what normals are rounded."""
+    key = "contact_radius_m" if task.edge_radius_m is None else "edge_radius_m"
+    return f"rounded over {1e3 * task.rounding_m:g} mm (task.{key})"
+
+
+def _color_reports(
     surface: Surface, coloring: Coloring, branch_names: tuple[str, ...]
 ) -> tuple[ColorReport, ...]:
     """What each color reaches."""
@@ -170,7 +225,7 @@ def color_reports(
     )
 
 
-def count_reasons(
+def _count_reasons(
     reasons: NDArray[np.uint8], names: tuple[str, ...], first: int = 0
 ) -> dict[str, int]:
     """How often each reason occurs, from the code ``first`` on, by its name."""
@@ -228,7 +283,7 @@ class Survey:
 def survey_of(prepared: PreparedScene) -> Survey:
     """Measure the surface of a scene where it stands."""
     base = prepared.robot.base_frame(None)[:3, 3]
-    found = survey(prepared.surface, prepared.kinematics.viewpoints, base)
+    found = survey(prepared.surface, prepared.arm.kinematics.viewpoints, base)
     gravity = np.array(prepared.setup.task.gravity_m_per_s2)
     if not prepared.part.open or not gravity.any():
         return found

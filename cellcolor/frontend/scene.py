@@ -30,6 +30,7 @@ from cellcolor.frontend.parts.part import PARTS, Part
 from cellcolor.frontend.parts.placement import Placement, Tolerance, rotation_from_rpy
 from cellcolor.frontend.parts.rounding import rounded
 from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.reach.validity import STANDARD_REASONS
 from cellcolor.frontend.reach.validity_tests import VALIDITY_TESTS, ValidityTest
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.tables import Coordinate, FileTable, Table, Vector, of_kind
@@ -139,6 +140,14 @@ class Scene(FileTable):
                     raise InputError(None, "cover.faces_file", message)
         return self
 
+    @model_validator(mode="after")
+    def _tests_of_other_names(self) -> Self:
+        for number, test in enumerate(self.validity_test):
+            if test.name in STANDARD_REASONS:
+                message = f"there is a reason {test.name!r} already"
+                raise InputError(None, f"validity_test[{number}]", message)
+        return self
+
     @property
     def solid_object(self) -> Part | None:
         """What must not be hit in the object's place, where that is not what is covered."""
@@ -233,10 +242,6 @@ class Scene(FileTable):
     def with_obstacle(self, *obstacles: Obstacle) -> Self:
         """The same scene with more obstacles in it."""
         return self.varied(obstacle=(*self.obstacle, *obstacles))
-
-    def with_test(self, *tests: ValidityTest) -> Self:
-        """The same scene with more tests of validity."""
-        return self.varied(validity_test=(*self.validity_test, *tests))
 
     def with_setup(self, setup: Setup | str | PathLike[str]) -> Self:
         """The same scene for another setup, a value or the name of its file."""

@@ -7,12 +7,7 @@ import math
 import re
 from typing import Annotated, Literal, Self
 
-from pydantic import (
-    Field,
-    FiniteFloat,
-    model_validator,
-)
-from pydantic_core import PydanticCustomError
+from pydantic import Field, FiniteFloat, model_validator
 
 from cellcolor.frontend.tables import (
     IN_RADIANS,
@@ -95,18 +90,17 @@ class Turn(Table):
     @model_validator(mode="after")
     def _complete(self) -> Self:
         if (self.along is None) == (self.towards_m is None):
-            raise PydanticCustomError("one_of_each", "give either along or towards_m")
+            raise ValueError("give either along or towards_m")
         if self.along is not None and not 1e-150 < math.hypot(*self.along) < 1e150:
-            raise PydanticCustomError("no_direction", "along must have a direction: it is zero")
+            raise ValueError("along must have a direction: it is zero")
         if self.turns is not None and self.turns_deg is not None:
-            raise PydanticCustomError("one_of_each", "give either turns or turns_deg")
+            raise ValueError("give either turns or turns_deg")
         around = sorted(degrees % 360.0 for degrees in self.degrees)
         gaps = [after - before for before, after in itertools.pairwise(around)]
         if len(around) > 1 and min(*gaps, 360.0 - around[-1] + around[0]) < _SAME_TURN_DEG:
-            raise PydanticCustomError("twice", "turns_deg has a turn twice, modulo 360 degrees")
+            raise ValueError("turns_deg has a turn twice, modulo 360 degrees")
         if len(around) > _MOST_TURNS:
-            message = f"turns_deg has {len(around)} turns, at most {_MOST_TURNS} fit"
-            raise PydanticCustomError("too_many", "{message}", {"message": message})
+            raise ValueError(f"turns_deg has {len(around)} turns, at most {_MOST_TURNS} fit")
         return self
 
     @property
@@ -150,11 +144,10 @@ class Task(Table):
     @model_validator(mode="after")
     def _tilted_some_way(self) -> Self:
         if self.turn is None and (self.lead_rad or self.tilt_rad):
-            message = (
+            raise ValueError(
                 "lead_rad and tilt_rad need the tool's turn (task.turn): without it nothing says "
                 "to which side the tool is tilted"
             )
-            raise PydanticCustomError("no_turn", "{message}", {"message": message})
         return self
 
     @property
@@ -168,8 +161,7 @@ def _one_of_each(table: Table, *names: str) -> None:
     for name in names:
         given = [key for key in (name, f"{name}_m3") if getattr(table, key) is not None]
         if len(given) != 1:
-            message = f"give either {name} or {name}_m3"
-            raise PydanticCustomError("one_of_each", "{message}", {"message": message})
+            raise ValueError(f"give either {name} or {name}_m3")
 
 
 class Thresholds(Table):
@@ -311,15 +303,13 @@ class Controller(Table):
     @model_validator(mode="after")
     def _named_as_there(self) -> Self:
         for key in ("tool", "work_object"):
-            given = getattr(self, key)
-            numbered = self.language in _NUMBERED
+            given, numbered = getattr(self, key), self.language in _NUMBERED
             fits = type(given) is int and 1 <= given <= 32
             if not numbered:
                 fits = isinstance(given, str) and _NAME.fullmatch(given) is not None
             if given is not None and not fits:
                 what = "a number from 1 to 32" if numbered else "a name of letters and digits"
-                message = f"{key} must be {what} in {self.language}"
-                raise PydanticCustomError("no_frame", "{message}", {"message": message})
+                raise ValueError(f"{key} must be {what} in {self.language}")
         return self
 
     @property
@@ -358,6 +348,5 @@ class Setup(FileTable):
     @model_validator(mode="after")
     def _home_is_known(self) -> Self:
         if self.prefer.posture == "near-home" and (self.motion is None or self.motion.home is None):
-            message = "prefer.posture 'near-home' needs a position as motion.home_rad"
-            raise PydanticCustomError("no_home", "{message}", {"message": message})
+            raise ValueError("prefer.posture 'near-home' needs a position as motion.home_rad")
         return self

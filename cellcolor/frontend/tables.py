@@ -25,7 +25,6 @@ from pydantic import (
     ValidationError,
     model_serializer,
 )
-from pydantic_core import PydanticCustomError
 
 from cellcolor.data.wording import beyond_turns, looks_like_degrees
 from cellcolor.errors import InputError, naming
@@ -245,12 +244,12 @@ def of_kind(registry: Registry[Kind], content: object) -> Kind:
     if isinstance(content, registry.base):
         return content
     if not isinstance(content, Mapping):
-        raise PydanticCustomError("no_table", "must be a table with a kind")
+        raise ValueError("must be a table with a kind")
     kind = content.get("kind")
     if not isinstance(kind, str):
-        raise PydanticCustomError("no_kind", "needs a kind, in quotation marks")
+        raise ValueError("needs a kind, in quotation marks")
     try:
         found = registry.find(kind)
     except InputError as error:
-        raise PydanticCustomError("kind", "{text}", {"text": error.message}) from error
+        raise ValueError(error.message) from error
     return found.model_validate(content)

@@ -93,11 +93,6 @@ class TriangleMesh:
         """(m, 3) the triangle beyond each side; -1 unless two have it."""
         return self.across // 3
 
-    def sides_of(self, edge: int) -> Index:
-        """The sides that are an edge, ascending."""
-        first = self._first_side[edge]
-        return self._edges_and_sides[2][first : first + self.triangles_at[edge]]
-
     @cached_property
     def _first_side(self) -> Index:
         return _fixed(np.cumsum(self.triangles_at) - self.triangles_at)

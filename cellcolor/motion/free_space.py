@@ -11,9 +11,8 @@ from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.shape import Shape
-from cellcolor.frontend.contact.engine import Contacts, Pair, pairs_of, poses_along
+from cellcolor.frontend.contact.engine import Contacts, Pair, always_touching, pairs_of, poses_along
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.reach.always_touching import always_touching
 from cellcolor.motion.following import joint_space
 
 _TOUCHING = 0.001  # m; so far the tip of a tool that leaves the object may be in it
@@ -48,7 +47,7 @@ class FreeSpace:
                 smaller one.
             leaving: see the class.
         """
-        place, robot = prepared.workplace, prepared.robot
+        place, robot = prepared, prepared.robot
         self._place, self._on = place, prepared.setup.constraints.collision
         self.space = joint_space(prepared)
         self._leaving, margins, room = leaving, prepared.setup.margins, share * clearance

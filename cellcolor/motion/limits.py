@@ -49,7 +49,7 @@ def motion_of(prepared: PreparedScene) -> Motion:
                 elif abs(at) > 2 * math.pi:
                     message += f": {looks_like_degrees(at)}"
                 raise InputError(None, f"motion.home_rad[{joint}]", message)
-        check_motion(motion, prepared.surface, prepared.scene, prepared.kinematics.reach)
+        check_motion(motion, prepared.surface, prepared.scene, prepared.arm.kinematics.reach)
         if motion.lead_m and not setup.task.stand_off_m:
             message = "only a tool that stands off (task.stand_off_m) goes on beyond its stroke"
             raise InputError(None, "motion.lead_m", message)

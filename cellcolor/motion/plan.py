@@ -90,7 +90,7 @@ def plan_motion(
     color_of = _colors(painted)
     own_branch = np.array([built.color_branch[color] for color in color_of], dtype=np.int64)
     # Not of length 1: so their means are on the same way as those of the given surface.
-    normals = painted.interpolated(built.stages.surface.normals)
+    normals = painted.interpolated(built.prepared.surface.normals)
     segments = Segments(surface, segment_of, color_of, normals)
     with clock.timed("corners of small triangles"):
         small = SmallTriangles.of(surface.mesh, normals, segment_of)

@@ -14,7 +14,7 @@ from cellcolor.decomposition import Decomposition
 from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult
-from cellcolor.frontend.reach.validity import Candidates
+from cellcolor.frontend.reach.validity import Verdicts
 from cellcolor.motion.following import joint_space
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.preferring import cost_of, preferred
@@ -48,7 +48,7 @@ def with_best_posture(
     home = None if motion is None or motion.home is None else np.array(motion.home)
     if home is None or prefer.posture == "well-conditioned":
         branch = np.array(built.color_branch, dtype=np.intp)
-        costs = color_costs(built.robot, built.stages.candidates)[:, branch]
+        costs = color_costs(built.robot, built.verdicts)[:, branch]
     else:
         costs = _from_home(built, home)
     instance = decomposition.instance
@@ -107,7 +107,7 @@ def _from_home(built: BuildResult, home: Array) -> Array:
     return np.asarray(np.nan_to_num(np.array(found).reshape(len(found), -1).T))
 
 
-def color_costs(robot: Robot, candidates: Candidates) -> Array:
+def color_costs(robot: Robot, candidates: Verdicts) -> Array:
     """How badly conditioned the arm is in each candidate (n, branches), from 0, best, to 1.
 
     Two things count, and the worse of them: the task determinant as a share of the greatest one on

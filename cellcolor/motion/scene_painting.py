@@ -16,10 +16,9 @@ from cellcolor.arrays import Index, unit
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of
-from cellcolor.frontend.build import BuildResult, result_of
+from cellcolor.frontend.build import BuildResult, build_prepared
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.stage_clock import Progress, StageClock
-from cellcolor.frontend.stages import Stages, judged
 from cellcolor.motion.posture import color_costs, with_best_posture
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import Painted, paint
@@ -83,44 +82,44 @@ def paint_scene(
         clock.begin("painting")
         drawn = paint(built.surface, decomposition, solution, deadline)
         whole = drawn.surface is built.surface
-        finer = built.stages.surface
-        stages = built.stages
+        finer = built
         if not whole:
-            normals = unit(drawn.interpolated(built.stages.surface.normals))
-            finer = Surface(drawn.surface.vertices, drawn.surface.faces, normals)
-            stages = judged(replace(prepared, surface=finer), clock)
+            normals = unit(drawn.interpolated(built.prepared.surface.normals))
+            surface = Surface(drawn.surface.vertices, drawn.surface.faces, normals)
+            finer = build_prepared(replace(prepared, surface=surface), clock)
         clock.begin("moving borders")
         branch = np.array(built.color_branch)
-        cost = color_costs(prepared.robot, stages.candidates)[:, branch]
+        cost = color_costs(prepared.robot, finer.verdicts)[:, branch]
         painted = move_borders(drawn, tool_radius_m, cost, deadline)
-        refused = () if whole else _refused(painted, stages, branch)
+        refused = () if whole else _refused(painted, finer, branch)
         if not refused or len(minima) == _TIMES:
             painted = replace(painted, minima=tuple(minima), refused=refused)
             return ScenePainting(painted, built, decomposition, solution)
         clock.begin("solving again")
         left_alone = built.left_alone
-        built = result_of(replace(prepared, surface=finer), stages, clock)
+        built = finer
         if left_alone is not None:
-            built = built.without(left_alone[drawn.stands_for])
+            built = finer.without(left_alone[drawn.stands_for])
         decomposition = decomposition_of(built.surface, None, deadline)
         options = Options(solution.search_space, solution.strands, deadline=deadline)
         found = solve(decomposition.instance, options)
         solution = with_best_posture(built, decomposition, found, options)
 
 
-def _refused(painted: Painted, stages: Stages, branch: Index) -> tuple[int, ...]:
+def _refused(painted: Painted, finer: BuildResult, branch: Index) -> tuple[int, ...]:
     """The vertices where the scene refuses a painting (:class:`~cellcolor.painting.paint.Painted`).
 
     Args:
         painted: the painting.
-        stages: of its surface.
+        finer: the build of its surface.
         branch: (colors,) of each of its colors.
     """
     colors = painted.plan.vertex_colors
     own = np.array([-1 if color is None else branch[color] for color in colors])
     colored = np.flatnonzero(own >= 0)
-    refused = set(colored[~stages.candidates.valid[colored, own[colored]]].tolist())
-    edges, linked, segment = stages.links.edges, stages.links.linked, painted.segment_of
+    refused = set(colored[~finer.verdicts.valid[colored, own[colored]]].tolist())
+    edges, linked = finer.prepared.surface.edges(), finer.all_colors.linked
+    segment = painted.segment_of
     within = np.flatnonzero(
         (segment[edges[:, 0]] == segment[edges[:, 1]]) & (own[edges[:, 0]] >= 0)
     )

@@ -16,7 +16,6 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.movement import HalfSpace
 from cellcolor.frontend.contact.obstacle import Obstacle
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.pictures.mesh_picture import eye
 from cellcolor.pictures.palette import FAINT
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines, Text
@@ -24,7 +23,6 @@ from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines, Text
 BESIDE = (28, 40)
 """The heights to look from, degrees, so that arm and part are seen side by side."""
 _AROUND = 20
-_ALONG = 10
 _GRID = 13
 OBSTACLE, BODY, GROUND = "#882255", "#C8C4B0", "#9AA3AF"
 _LINKS = ("#AEB6C2", "#7F8A9B")  # alternating
@@ -95,11 +93,16 @@ def link_fills(robot: Robot) -> dict[str, str]:
 
 
 def surroundings(prepared: PreparedScene) -> list[Layer]:
-    """The body of the part and the obstacles, in the world frame."""
+    """The body of the part, without what is covered of it, and the obstacles, in the world."""
     scene, layers = prepared.scene, []
     if scene.solid_object is not None:
-        body = scene.solid_object.surface(scene.folder).placed(scene.placement)
-        layers.append(Layer("collision object", BODY, body.vertices, body.faces))
+        body = scene.solid_object.surface(scene.folder)
+        faces = body.faces
+        if scene.collision_object is None and scene.cover is not None:
+            # What is covered lies in the same place, and would be hidden.
+            faces = faces[~scene.cover.chosen(body, scene.folder)]
+        body = body.placed(scene.placement)
+        layers.append(Layer("collision object", BODY, body.vertices, faces))
     if scene.obstacle:
         meshes = [_obstacle_mesh(each, scene.folder) for each in scene.obstacle]
         layers.append(Layer("obstacles", OBSTACLE, *_joined(meshes)))
@@ -116,7 +119,7 @@ def body_mesh(body: Body) -> _Mesh:
     """Points (k, 3) in m and triangles (t, 3) of a body, in the frame of its joint."""
     if body.solid is not None:
         return body.solid.vertices, body.solid.faces
-    return (_cylinder if body.flat else _capsule)(body.start, body.end, body.radius)
+    return _round(body)
 
 
 def _placed(body: Body, poses: Poses) -> _Mesh:
@@ -125,52 +128,21 @@ def _placed(body: Body, poses: Poses) -> _Mesh:
     return turned, triangles
 
 
-def _capsule(start: Array, end: Array, radius: float) -> _Mesh:
-    """All points within ``radius`` of a segment, or a ball where its ends coincide."""
-    latitudes = np.linspace(0, np.pi / 2, 6)[1:]
-    back = [(0.0, -np.cos(a) * radius, np.sin(a) * radius) for a in latitudes]
-    front = [(1.0, np.cos(a) * radius, np.sin(a) * radius) for a in latitudes[::-1]]
-    between = [(t, 0.0, radius) for t in np.linspace(0, 1, _ALONG + 1)[1:-1]]
-    rings = back + between + front
-    return _turned(start, end, [(0.0, -radius, 0.0), *rings, (1.0, radius, 0.0)])
+def _round(body: Body) -> _Mesh:
+    """All points within a radius of a segment, or a flat-ended cylinder around it."""
+    from trimesh.creation import capsule, cylinder
+    from trimesh.geometry import align_vectors
 
-
-def _cylinder(start: Array, end: Array, radius: float) -> _Mesh:
-    """A flat-ended cylinder."""
-    rings = [(t, 0.0, radius) for t in np.linspace(0, 1, _ALONG + 1)]
-    return _turned(start, end, [(0.0, 0.0, 0.0), *rings, (1.0, 0.0, 0.0)])
-
-
-def _turned(start: Array, end: Array, profile: list[tuple[float, float, float]]) -> _Mesh:
-    """A profile turned about the segment's axis; its first and last points lie on the axis.
-
-    Each point of the profile is the share of the way from start to end, an offset along the axis
-    (m), and the distance from it (m).
-    """
-    axis = end - start
+    axis = body.end - body.start
     length = float(np.linalg.norm(axis))
-    z = axis / length if length else np.array([0.0, 0.0, 1.0])
-    x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
-    x /= np.linalg.norm(x)
-    angles = np.arange(_AROUND) * 2 * np.pi / _AROUND
-    around = np.cos(angles)[:, None] * x + np.sin(angles)[:, None] * np.cross(z, x)
-    points = np.concatenate(
-        [start + t * axis + offset * z + radius * around for t, offset, radius in profile]
-    )
-    first = np.arange(_AROUND)
-    after = np.roll(first, -1)
-    strips = [
-        np.concatenate(
-            [
-                np.stack([low + first, low + after, low + _AROUND + after], axis=1),
-                np.stack([low + first, low + _AROUND + after, low + _AROUND + first], axis=1),
-            ]
-        )
-        for low in range(0, len(points) - _AROUND, _AROUND)
-    ]
-    triangles = np.concatenate(strips).astype(np.int64)
-    # Half of the triangles at the two poles have no area.
-    return points, triangles[TriangleMesh(points, triangles).areas > 5e-16]
+    if body.flat:
+        made = cylinder(body.radius, length, sections=_AROUND)
+    else:
+        made = capsule(length, body.radius, (_AROUND, _AROUND))
+        made.apply_translation(-made.bounds.mean(axis=0))
+    turn = align_vectors([0, 0, 1], axis)[:3, :3] if length else np.eye(3)
+    middle = (body.start + body.end) / 2
+    return made.vertices @ turn.T + middle, made.faces.astype(np.int64)
 
 
 def _obstacle_mesh(obstacle: Obstacle, folder: Path) -> _Mesh:

@@ -16,12 +16,11 @@ from scipy.sparse import csr_array, hstack, identity
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import Deadline
-from cellcolor.frontend.links import continuous_links
+from cellcolor.frontend.build import judged_at_vertices
+from cellcolor.frontend.links import continuous_along
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.reach.continuity import node_links
+from cellcolor.frontend.reach.continuity import regions
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import judged_at_vertices, with_turn
-from cellcolor.mesh.triangle_mesh import grouped
 from cellcolor.questions.placements import SAME_SHARE
 
 _SLACK = 1e-6  # of a bound in floating point
@@ -38,16 +37,14 @@ def bounds_of(prepared: PreparedScene, cover: float, deadline: Deadline) -> tupl
     Raises:
         OutOfTime: the deadline came first.
     """
-    candidates, _ = judged_at_vertices(prepared, StageClock(deadline, None))
+    verdicts = judged_at_vertices(prepared, StageClock(deadline, None))
     areas = prepared.surface.vertex_areas()
-    valid = with_turn(prepared, candidates).valid
+    valid, edges = verdicts.valid, prepared.surface.edges()
     # Added up as a whole build adds: what is the same must not differ by rounding.
     most = float(areas[valid.any(axis=1)].sum() / areas.sum())
     if most < cover - SAME_SHARE or not most:
         return most, 1
-    links = continuous_links(prepared, candidates, deadline)
-    kept = links.linked & valid[links.edges].all(axis=1)
-    region = grouped(valid.size, node_links(links.edges, kept)).reshape(valid.shape)
+    region = regions(valid, edges, continuous_along(prepared, edges, verdicts, deadline))
     # Slivers are given up, and what a tolerance refuses is not covered either: nobody knows yet
     # which. Without both all that is valid has to be covered.
     whole = prepared.setup.slivers is None and prepared.scene.tolerance is None

@@ -19,12 +19,11 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
-from cellcolor.frontend.build import labelled
-from cellcolor.frontend.judging_again import judged_asking_less, judged_asking_more
+from cellcolor.frontend.build import BuildResult, build_prepared
+from cellcolor.frontend.judging_again import built_asking_less, built_asking_more
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.relaxing import Relaxation, ToolLength, relaxations_of, without
+from cellcolor.frontend.relaxing import TOOL_LENGTH, Relaxation, relaxations_of, without
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages, judged
 from cellcolor.questions.explanation import Explanation, RelaxedMinimum
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
@@ -62,15 +61,15 @@ def explained(
             report(f"without {one.name}")
             alone[one] = asked.without([one])
             if not alone[one].same_as(base):
-                for part in one.parts(prepared):
+                for part in one.parts:
                     report(f"without {part.name}")
                     alone[part] = asked.without([part])
         saving = [one for one, row in alone.items() if _saves(row, base)]
-        for one in (*saving, ToolLength()):
-            if one.unit is not None:
+        for one in (*saving, TOOL_LENGTH):
+            if one.most:
                 report(f"how much of {one.name}")
                 found = asked.least_amount(one)
-                amounts += [found] if _saves(found, base) or one == ToolLength() else []
+                amounts += [found] if _saves(found, base) or one == TOOL_LENGTH else []
         if not saving and (base.lift_offs or 0) > 0:
             sets = asked.smallest_sets(report)
     except OutOfTime:
@@ -92,9 +91,9 @@ def _rank(row: RelaxedMinimum) -> tuple[float, float]:
 
 @dataclass(frozen=True, eq=False)
 class _Known:
-    """A solved scene: its stages, and the result."""
+    """A solved scene: its build, and the result."""
 
-    stages: Stages
+    built: BuildResult
     row: RelaxedMinimum
 
 
@@ -109,7 +108,7 @@ class _Asked:
 
     def __init__(self, prepared: PreparedScene, options: Options) -> None:
         self._prepared, self._options = prepared, options
-        self._known = self._solved(prepared, judged(prepared, self._clock), ())
+        self._known = self._solved(build_prepared(prepared, self._clock), ())
         self.base, self.things = self._known.row, relaxations_of(prepared)
         self._quick = prepared.arm.named and prepared.scene.tolerance is None
         # The scene without each thing that was tried alone, where more is valid then.
@@ -127,7 +126,7 @@ class _Asked:
         """
         known, rest = self._nearest(what)
         found = self._relaxed(what, known, rest)
-        if self._quick and len(what) == 1 and found.stages is not known.stages:
+        if self._quick and len(what) == 1 and found.built is not known.built:
             (one,) = what
             if one in self.things and one.reasons is not None:
                 self._freer[one] = found
@@ -140,8 +139,8 @@ class _Asked:
         try:
             if not self._quick or any(one.reasons is None for one in what):
                 relaxed = without(self._prepared, what)
-                return self._solved(relaxed, judged(relaxed, self._clock), what)
-            return self._again(judged_asking_less, known, what, _reasons_of(rest))
+                return self._solved(build_prepared(relaxed, self._clock), what)
+            return self._again(built_asking_less, known, what, _reasons_of(rest))
         except InputError as error:
             note = f"it cannot be built: {error}"
             row = RelaxedMinimum(*_in_words(what), None, 1, 0.0, 0.0, False, note)
@@ -155,21 +154,21 @@ class _Asked:
         freer = [one for one in what if one in self._freer]
         if not freer:
             return self._known, list(what)
-        first = max(freer, key=lambda one: self._freer[one].stages.candidates.valid.sum())
+        first = max(freer, key=lambda one: self._freer[one].built.verdicts.valid.sum())
         return self._freer[first], [one for one in what if one != first]
 
     def _without_some(self, one: Relaxation, amount: float, less: _Known) -> _Known:
         """The scene with a thing weakened by an amount, judged from one where it is less weak."""
         some = one.by(amount)
         if one in self._freer and some.reasons is None:
-            found = self._again(judged_asking_more, self._freer[one], [some], _reasons_of([one]))
+            found = self._again(built_asking_more, self._freer[one], [some], _reasons_of([one]))
         else:
             found = self._relaxed([some], less, [some])
         return replace(found, row=replace(found.row, relaxed=(one.said_of(amount),)))
 
     def _again(
         self,
-        judged_anew: Callable[[PreparedScene, Stages, frozenset[str], StageClock], Stages],
+        built_anew: Callable[[PreparedScene, BuildResult, frozenset[str], StageClock], BuildResult],
         known: _Known,
         what: Sequence[Relaxation],
         reasons: frozenset[str],
@@ -177,25 +176,23 @@ class _Asked:
         """The scene without some things, judged from a known one that differs in some tests only.
 
         Args:
-            judged_anew: judges with more or with fewer tests.
+            built_anew: builds with more or with fewer tests.
             reasons: the tests in which the two differ.
         """
         relaxed = without(self._prepared, what)
-        found = judged_anew(relaxed, known.stages, reasons, self._clock)
-        if not _same(found, known.stages):
-            return self._solved(relaxed, found, what)
+        found = built_anew(relaxed, known.built, reasons, self._clock)
+        if not _same(found, known.built):
+            return self._solved(found, what)
         names, keys = _in_words(what)
         return replace(known, row=replace(known.row, relaxed=names, keys=keys))
 
-    def _solved(
-        self, prepared: PreparedScene, stages: Stages, what: Sequence[Relaxation]
-    ) -> _Known:
-        surface, _ = labelled(prepared, stages, {})
+    def _solved(self, built: BuildResult, what: Sequence[Relaxation]) -> _Known:
+        surface = built.surface
         deadline = self._options.deadline
         instance = decomposition_of(surface, deadline=deadline).instance
         areas = surface.vertex_areas
         covered = float(areas[surface.colored].sum())
-        reached = ~np.isnan(stages.candidates.configurations[:, :, 0]).all(axis=1)
+        reached = ~np.isnan(built.configurations[:, :, 0]).all(axis=1)
         shares = covered / max(float(areas[reached].sum()), covered, 1e-12), covered / areas.sum()
         found: tuple[int | None, int, bool, str] = None, 0, True, "nothing is reached"
         if not instance.nothing_to_cover:
@@ -214,7 +211,7 @@ class _Asked:
         segments, at_least, proved, note = found
         names, keys = _in_words(what)
         row = RelaxedMinimum(names, keys, segments, at_least, *shares, proved, note)
-        return _Known(stages, row)
+        return _Known(built, row)
 
     def least_amount(self, one: Relaxation) -> RelaxedMinimum:
         """The row of the least amount that saves a lift-off; if none does, of the greatest."""
@@ -257,7 +254,7 @@ class _Asked:
         named = [one for one in self.things if one.reasons is not None]
         known, rest = self._nearest(named)
         relaxed = without(self._prepared, named)
-        free = judged_asking_less(relaxed, known.stages, _reasons_of(rest), self._clock)
+        free = built_asking_less(relaxed, known.built, _reasons_of(rest), self._clock)
         report("what holds anything back")
         useful = [one for one in named if self._refuses(one, named, free)]
         doubtful = [one for one in named if one not in useful]
@@ -273,15 +270,15 @@ class _Asked:
                 return sorted(found, key=_rank)
         return []
 
-    def _refuses(self, one: Relaxation, things: Sequence[Relaxation], free: Stages) -> bool:
+    def _refuses(self, one: Relaxation, things: Sequence[Relaxation], free: BuildResult) -> bool:
         """Whether a thing alone refuses a candidate that is valid without any of the things."""
         only = without(self._prepared, [other for other in things if other != one])
-        test, valid = only.judge.only(_reasons_of([one])), free.candidates.valid
-        verdicts = test(free.candidates.configurations[valid], self._options.deadline)
+        test, valid = only.judge.only(_reasons_of([one])), free.verdicts.valid
+        verdicts = test(free.configurations[valid], self._options.deadline)
         return bool((verdicts.reasons != VALID).any())
 
     def _cutting(
-        self, some: Sequence[Relaxation], things: Sequence[Relaxation], free: Stages
+        self, some: Sequence[Relaxation], things: Sequence[Relaxation], free: BuildResult
     ) -> list[Relaxation]:
         """Those of some things that refuse no candidate and cut a link, once nothing else does.
 
@@ -290,7 +287,7 @@ class _Asked:
         if not some:
             return []
         only = without(self._prepared, [other for other in things if other not in some])
-        held = judged_asking_more(only, free, _reasons_of(some), self._clock)
+        held = built_asking_more(only, free, _reasons_of(some), self._clock)
         if _same(held, free):
             return []
         if len(some) == 1:
@@ -307,8 +304,8 @@ def _in_words(what: Sequence[Relaxation]) -> tuple[tuple[str, ...], tuple[str, .
     return tuple(one.name for one in what), tuple(one.key for one in what)
 
 
-def _same(first: Stages, second: Stages) -> bool:
+def _same(first: BuildResult, second: BuildResult) -> bool:
     """Whether the same candidates are valid and the same links, hence the same colors."""
-    return np.array_equal(first.candidates.valid, second.candidates.valid) and np.array_equal(
-        first.links.linked, second.links.linked
+    return np.array_equal(first.verdicts.valid, second.verdicts.valid) and np.array_equal(
+        first.all_colors.linked, second.all_colors.linked
     )

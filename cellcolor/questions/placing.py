@@ -19,7 +19,7 @@ from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
-from cellcolor.frontend.build import labelled
+from cellcolor.frontend.build import build_prepared
 from cellcolor.frontend.contact.engine import meet
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 from cellcolor.frontend.parts.remeshing import length_for, remeshed
@@ -27,7 +27,6 @@ from cellcolor.frontend.parts.unfolding import fold_angle, folds
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import judged
 from cellcolor.questions.bounding_places import bounds_of
 from cellcolor.questions.placements import VARIABLES, PlacedMinimum, Pose, Ranges
 from cellcolor.solvers import checked
@@ -209,11 +208,11 @@ def minima_at(
 
 def stands_in(prepared: PreparedScene) -> str | None:
     """What the part is in or touches: the ground or an obstacle; None if nothing."""
-    place, vertices = prepared.workplace, prepared.surface.vertices
-    if place.ground is not None and (place.ground.along(vertices) < place.ground.offset_m).any():
+    vertices, ground = prepared.surface.vertices, prepared.ground
+    if ground is not None and (ground.along(vertices) < ground.offset_m).any():
         return "the ground"
-    for number, solid in enumerate(place.obstacles, 1):
-        if meet(solid, place.target):
+    for number, solid in enumerate(prepared.obstacles, 1):
+        if meet(solid, prepared.target):
             return f"obstacle {number}"
     return None
 
@@ -228,7 +227,7 @@ def _bounds(prepared: PreparedScene, pose: Pose, cover: float, deadline: Deadlin
 
 def _minimum(prepared: PreparedScene, pose: Pose, options: Options) -> PlacedMinimum:
     clock = StageClock(options.deadline, None)
-    surface, _ = labelled(prepared, judged(prepared, clock), {})
+    surface = build_prepared(prepared, clock).surface
     instance = decomposition_of(surface, deadline=options.deadline).instance
     areas = surface.vertex_areas
     share = float(areas[surface.colored].sum() / areas.sum())

@@ -12,12 +12,11 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
-from cellcolor.frontend.build import labelled
+from cellcolor.frontend.build import build_prepared
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import judged
 from cellcolor.questions.choosing_set_ups import Choice, choose
 from cellcolor.questions.placements import Pose
 from cellcolor.questions.placing import pose_of, stands_in
@@ -138,7 +137,7 @@ def _built(there: PreparedScene, deadline: Deadline) -> LabelledSurface:
     within = stands_in(there)
     if within is not None:
         raise InputError(None, "placement", f"the part stands in {within}")
-    surface, _ = labelled(there, judged(there, StageClock(deadline, None)), {})
+    surface = build_prepared(there, StageClock(deadline, None)).surface
     if not any(surface.vertex_colors):
         raise InputError(None, None, "nothing is reached")
     decomposition_of(surface, deadline=deadline)  # refuses cells that are not planar

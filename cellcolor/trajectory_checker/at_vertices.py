@@ -115,7 +115,7 @@ def at_vertices(
     Raises:
         InputError: the arm has another number of joints.
     """
-    robot, surface = built.robot, built.stages.surface
+    robot, surface = built.robot, built.prepared.surface
     _check_width(robot, joints)
     tips, axes = poses_of(robot, joints, deadline)
     off = np.linalg.norm(tips - surface.vertices[vertex], axis=1)
@@ -156,7 +156,7 @@ def _turned(
     Args:
         axes: (k, 3) the tool's own direction, which counts if the task asks for none.
     """
-    turn, surface = built.scene.setup.task.turn, built.stages.surface
+    turn, surface = built.scene.setup.task.turn, built.prepared.surface
     if turn is None:
         return np.zeros(len(vertex))
     across = across_of(built.robot, joints, deadline)

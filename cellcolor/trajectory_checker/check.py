@@ -103,6 +103,7 @@ def check_trajectory(
     lift_offs, claimed = trajectory.lift_offs, len(trajectory.extra_lift_offs)
     minimum = minimum_lift_offs
     return TrajectoryVerdict(
+        valid=not faults.counts,
         name=trajectory.name,
         samples=len(trajectory.times),
         tested=len(dense),

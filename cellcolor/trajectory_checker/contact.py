@@ -156,7 +156,7 @@ def _solutions(
     If the setup gives turns of the tool, branches are numbered turn by turn. Then a pose is solved
     with its own turn, and its branches are those of the nearest given turn.
     """
-    kinematics = prepared.kinematics
+    kinematics = prepared.arm.kinematics
     if not isinstance(kinematics, TurnedKinematics):
         return prepared.arm.inverse(tips, axes, deadline), np.zeros(len(tips), dtype=np.int64)
     number = np.argmin(turns_off(kinematics.turn, tips, axes, across), axis=1)

@@ -193,7 +193,7 @@ def failing_places(
     nearest = cKDTree(fine.vertices).query(places)[1]
     at = fine.locate(places, fine.normals[nearest], deadline)
     stated = np.array([part.segment for part in trajectory.left_out])
-    every = np.arange(len(prepared.kinematics.branches))
+    every = np.arange(len(prepared.arm.kinematics.branches))
     for number in np.unique(stated).tolist():
         own = contact.branches[(contact.segment == number) & (contact.branches >= 0)]
         asked = np.flatnonzero(stated == number)

@@ -138,14 +138,14 @@ def _torn(built: BuildResult) -> Index:
     Joint limits are judged elsewhere. If they divide a branch into several colors, the cracks
     between these are no faults here: the cracks modulo full circles are taken instead.
     """
-    cleaned, limits = built.stages.cleaned, built.limits
+    coloring, limits = built.coloring, built.limits
     divided = {limits.color[color] for color in limits.positions}
-    whole, modulo = built.color_branch, cleaned.coloring.branch
+    whole, modulo = built.color_branch, coloring.branch
     torn = {
         (min(crack.i, crack.j), max(crack.i, crack.j), branch[color])
         for cracks, branch, colors in (
             (built.surface.cracks, whole, set(range(len(whole))) - limits.positions.keys()),
-            (cleaned.cracks, modulo, divided),
+            (coloring.cracks, modulo, divided),
         )
         for crack in cracks
         for color in crack.colors

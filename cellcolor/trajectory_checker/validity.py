@@ -49,7 +49,7 @@ def judge_validity(
     # What lies between two samples with no planned move is known to be nothing.
     on_the_way = np.flatnonzero(~dense.contact & ~(unplanned[dense.sample] & (dense.way > 0)))
     setup = prepared.setup.varied(constraints={"force": False, "conditioning": False})
-    judge = Judge(replace(prepared.workplace, arm=replace(prepared.arm, setup=setup)))
+    judge = Judge(replace(prepared, arm=replace(prepared.arm, setup=setup)))
     joints = dense.joints[on_the_way]
     reasons = _reasons(prepared, judge, joints, deadline, on_the_way=True)
     _note(dense, on_the_way, reasons, judge.reason_names, faults)
@@ -64,12 +64,12 @@ def _reasons(
     on_the_way: bool = False,
 ) -> NDArray[np.uint8]:
     """The code (k,) of the first test that each configuration fails; contacts by an own engine."""
-    place, names = prepared.workplace, judge.reason_names
+    names = judge.reason_names
     tests: dict[str, list[Pair]] = {}
     if prepared.setup.constraints.collision:
-        tests = pairs_of(place)
+        tests = pairs_of(prepared)
         if on_the_way:
-            tests["object collision"] += _through_object(place)
+            tests["object collision"] += _through_object(prepared)
     others = judge.only(frozenset(names) - tests.keys())
     reasons = np.zeros(len(joints), dtype=np.uint8)
     for rows in chunks(len(joints)):

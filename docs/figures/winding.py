@@ -36,7 +36,7 @@ def main(folder: Path) -> None:
     )
     (naive,) = covered.paths.paths
     samples = sampled(naive)
-    branch = ring.built.stages.cleaned.coloring.branch[color]
+    branch = ring.built.coloring.branch[color]
     followed = follow(ring.prepared, samples, branch).joints[:, 0]
     # The start turn that keeps it inside the longest.
     trajectory = ring.plan.trajectory

@@ -82,9 +82,7 @@ FORMATS = {
     "check-error-1": Format(1, verdicts.CheckError),
     "library-1": Format(1, library_index.LibraryIndex),
     "trajectory-1": Format(1, trajectory.Trajectory),
-    "trajectory-verdict-1": Format(
-        1, trajectory_verdict.TrajectoryVerdict, trajectory_verdict._VerdictFile
-    ),
+    "trajectory-verdict-1": Format(1, trajectory_verdict.TrajectoryVerdict),
 }
 """The JSON formats by the names of their schemas' files."""
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import csv
-import hashlib
 import json
+import math
 import runpy
 import shutil
 import subprocess
 import sys
 import zipfile
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from library import INSTANCES
 from cellcolor.checker.division import check_solution
 from cellcolor.data.bounds import Bound, Extent
 from cellcolor.data.library_index import KnownRange, LibraryEntry, LibraryIndex, UpperBound
-from cellcolor.data.solution import SearchSpace, Solution
+from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
@@ -40,52 +41,6 @@ LIBRARY = LibraryIndex.read(INSTANCES / INDEX)
 def test_the_index_is_true() -> None:
     """Hashes, counts, and all bounds, with every solution and certificate checked."""
     assert problems(INSTANCES) == []
-
-
-def fingerprint(document: dict[str, Any]) -> str:
-    """The fingerprint of an instance's file, as docs/formats.md tells it."""
-    colors = {cell["id"]: set(cell["colors"]) for cell in document["cells"]}
-    edges = []
-    for edge in document["edges"]:
-        shared = colors.get(edge["left"], set()) & colors.get(edge["right"], set())
-        joinable = sorted(edge.get("colors", shared))
-        edges.append([edge["id"], edge["left"], edge["right"], joinable])
-    cells = []
-    for cell in document["cells"]:
-        turned = []
-        for loop in cell["loops"]:
-            first = loop.index(min(loop))
-            turned.append(loop[first:] + loop[:first])
-        cells.append([sorted(cell["colors"]), sorted(turned)])
-    content = {"cells": cells, "colors": len(document["colors"]), "edges": sorted(edges)}
-    text = json.dumps(content, separators=(",", ":"), sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
-def test_fingerprints_and_counts_computed_again() -> None:
-    read = 0
-    for entry in LIBRARY.entries:
-        if entry.file is None or entry.file.endswith(".surface.json"):
-            continue
-        raw = (INSTANCES / entry.file).read_bytes()
-        document = json.loads(raw)
-        assert hashlib.sha256(raw).hexdigest() == entry.sha256
-        assert fingerprint(document) == entry.fingerprint, entry.name
-        loops = [len(cell["loops"]) for cell in document["cells"]]
-        assert entry.holes == sum(number - 1 for number in loops if number)
-        assert (entry.cells, entry.edges) == (len(loops), len(document["edges"]))
-        read += 1
-    assert read > 80
-
-
-def test_stored_solutions_are_of_the_graphs_that_they_are_named_after() -> None:
-    for entry in LIBRARY.entries:
-        for upper in (entry.paper.upper, entry.surface.upper):
-            if upper is not None and upper.solution is not None:
-                document = json.loads((INSTANCES / upper.solution).read_text(encoding="utf-8"))
-                assert document["instance"]["sha256"] == entry.fingerprint
-                segments = {s["segment"] for cell in document["cells"] for s in cell["subcells"]}
-                assert len(segments) == upper.value
 
 
 HARD = [
@@ -120,42 +75,10 @@ def test_ten_seconds_do_not_beat_the_index(name: str) -> None:
     for space in ("paper", "surface"):
         if not entry.range_in(space).proved:
             solution = solve(graph, Options(space, STRANDS[space], deadline=Deadline.after(10)))
-            report = check_solution(graph, solution)
-            assert report.valid
-            bounds = [
-                (v.bound.holds_for, v.bound.value, v.outcome == "verified") for v in report.bounds
-            ]
-            assert entry.beaten_by(solution, bounds) == []
-
-
-def test_what_beats_an_entry() -> None:
-    """Of the range 3 to 5 in the search space paper, and 2 to 4 on the surface."""
-    ring = LIBRARY["ring"]
-    assert ring.paper.upper is not None
-    lower, upper = replace(ring.paper.lower, verified=False), ring.paper.upper
-    entry = replace(
-        ring,
-        paper=KnownRange(replace(lower, value=3), replace(upper, value=5)),
-        surface=KnownRange(replace(lower, value=2), replace(upper, value=4)),
-    )
-    solution = Solution.read(INSTANCES / SOLUTIONS / "ring.solution.json")
-
-    def beaten(space: SearchSpace, segments: int | None, *bounds: Any) -> list[str]:
-        found = replace(solution, search_space=space)
-        object.__setattr__(found, "segments", segments)
-        return [line.partition(";")[0] for line in entry.beaten_by(found, bounds)]
-
-    paper, surface = "search space paper: ", "any division of the surface: "
-    assert beaten("paper", 5) == beaten("surface", 4) == beaten("paper", None) == []
-    assert beaten("paper", 4) == [paper + "4 segments"]
-    assert beaten("paper", 3) == [paper + "3 segments", surface + "3 segments"]
-    assert beaten("surface", 3) == [surface + "3 segments"]
-    assert beaten("paper", 5, ("strands", 3, False), ("surface", 2, False)) == []
-    certified = "at least 3 segments, with certificate"
-    assert beaten("paper", 5, ("strands", 3, True)) == [paper + certified]
-    assert beaten("paper", 5, ("surface", 3, True)) == [paper + certified, surface + certified]
-    plain = surface + "at least 3 segments, without certificate"
-    assert beaten("paper", 5, ("surface", 3, False)) == [plain]
+            assert check_solution(graph, solution).valid
+            known = entry.range_in(space)
+            assert solution.lower_bound <= known.lower.value
+            assert known.upper is None or (solution.segments or math.inf) >= known.upper.value
 
 
 def test_no_bound_is_lost_when_a_graph_is_solved_again() -> None:
@@ -224,41 +147,75 @@ def edit(path: Path, old: str, new: str) -> None:
     path.write_text(text.replace(old, new, 1), encoding="utf-8")
 
 
-def test_a_copy_is_true(copy: Path) -> None:
-    assert problems(copy) == []
-
-
-def test_a_changed_byte_is_found(copy: Path) -> None:
-    edit(copy / "paper/ring.json", "blue", "blub")
-    assert problems(copy) == ["paper/ring.json: sha256 is not that of the index"]
-
-
-def test_another_graph_is_found(copy: Path) -> None:
+def _another_graph(copy: Path) -> None:
     shutil.copy(copy / "paper/parallel-corridors.json", copy / "paper/ring.json")
-    found = problems(copy)
-    assert found[0] == "paper/ring.json: sha256 is not that of the index"
-    assert "solutions/ring.solution.json: is not valid" in found[1]
 
 
-def test_a_broken_or_missing_file_is_found(copy: Path) -> None:
-    (copy / "paper/ring.json").write_text("{", encoding="utf-8")
-    assert [line for line in problems(copy) if line.startswith("paper/ring.json: ")]
-    (copy / "paper/ring.json").unlink()
-    assert problems(copy) == ["paper/ring.json: No such file or directory"]
-
-
-def test_files_without_an_entry_are_found(copy: Path) -> None:
+def _of_no_entry(copy: Path) -> None:
     shutil.copy(INSTANCES / "paper/annulus.json", copy / "paper")
     shutil.copy(INSTANCES / SOLUTIONS / "annulus.solution.json", copy / SOLUTIONS)
-    assert problems(copy) == [
-        "paper/annulus.json: is not in the index",
-        "solutions/annulus.solution.json: is of no graph here",
-    ]
 
 
-def test_entries_out_of_order_are_found(copy: Path) -> None:
-    write(copy, LIBRARY["ring"], LIBRARY["parallel-corridors"])
-    assert problems(copy) == ["index.json: the entries are not in the order of their names"]
+STALE: dict[str, tuple[Callable[[Path], object], list[str]]] = {
+    "nothing": (lambda _: None, []),
+    "a changed byte": (
+        lambda copy: edit(copy / "paper/ring.json", "blue", "blub"),
+        ["paper/ring.json: sha256 is not that of the index"],
+    ),
+    "another graph": (
+        _another_graph,
+        [
+            "paper/ring.json: sha256 is not that of the index",
+            "solutions/ring.solution.json: is not valid",
+        ],
+    ),
+    "a broken file": (
+        lambda copy: (copy / "paper/ring.json").write_text("{", encoding="utf-8"),
+        ["paper/ring.json: "],
+    ),
+    "a missing file": (
+        lambda copy: (copy / "paper/ring.json").unlink(),
+        ["paper/ring.json: No such file or directory"],
+    ),
+    "files without an entry": (
+        _of_no_entry,
+        [
+            "paper/annulus.json: is not in the index",
+            "solutions/annulus.solution.json: is of no graph here",
+        ],
+    ),
+    "entries out of order": (
+        lambda copy: write(copy, LIBRARY["ring"], LIBRARY["parallel-corridors"]),
+        ["index.json: the entries are not in the order of their names"],
+    ),
+    # The division of the search space surface has one segment fewer.
+    "the best division missing": (
+        lambda copy: (copy / SOLUTIONS / "parallel-corridors.surface.solution.json").unlink(),
+        ["paper/parallel-corridors.json: surface.upper is "],
+    ),
+    "another number": (
+        lambda copy: edit(
+            copy / SOLUTIONS / "ring.solution.json", '"segments": 2', '"segments": 3'
+        ),
+        ["solutions/ring.solution.json: is not valid"],
+    ),
+    "another search space": (
+        lambda copy: (copy / SOLUTIONS / "ring.solution.json").rename(
+            copy / SOLUTIONS / "ring.surface.solution.json"
+        ),
+        ["solutions/ring.surface.solution.json: search_space: must"],
+    ),
+}
+
+
+@pytest.mark.parametrize(("change", "said"), STALE.values(), ids=STALE.keys())
+def test_what_is_stale_is_found(
+    change: Callable[[Path], object], said: list[str], copy: Path
+) -> None:
+    change(copy)
+    found = problems(copy)
+    assert len(found) >= len(said) and bool(found) is bool(said)
+    assert all(line.startswith(begin) for begin, line in zip(said, found, strict=False))
 
 
 @pytest.mark.parametrize("member", ["cells", "edges", "darts", "loops", "colors", "holes"])
@@ -285,24 +242,6 @@ def test_bounds_that_no_solution_shows_are_found(copy: Path) -> None:
         assert "paper.lower is" in found[0] or "paper.upper is" in found[0]
     write(copy, LIBRARY["parallel-corridors"], replace(ring, paper=nothing))
     assert "paper/ring.json: paper.upper is None" in problems(copy)[0]
-
-
-def test_a_worse_division_in_the_place_of_the_best_is_found(copy: Path) -> None:
-    """The division of the search space surface, which has one segment fewer, is taken away."""
-    (copy / SOLUTIONS / "parallel-corridors.surface.solution.json").unlink()
-    (line,) = problems(copy)
-    assert line.startswith("paper/parallel-corridors.json: surface.upper is ")
-
-
-def test_a_solution_with_another_number_is_found(copy: Path) -> None:
-    edit(copy / SOLUTIONS / "ring.solution.json", '"segments": 2', '"segments": 3')
-    assert problems(copy)[0].startswith("solutions/ring.solution.json: is not valid")
-
-
-def test_a_solution_of_another_search_space_is_found(copy: Path) -> None:
-    folder = copy / SOLUTIONS
-    (folder / "ring.solution.json").rename(folder / "ring.surface.solution.json")
-    assert problems(copy)[0].startswith("solutions/ring.surface.solution.json: search_space: must")
 
 
 def test_bounds_that_stay_keep_their_dates(copy: Path) -> None:

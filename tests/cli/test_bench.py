@@ -70,7 +70,7 @@ def fakes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def rows(path: Path) -> list[Row]:
-    return read_table(path, Row)
+    return read_table(path)
 
 
 @pytest.fixture(scope="module")

@@ -72,7 +72,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
 
     def verdict(*_: Any, **options: Any) -> TrajectoryVerdict:
         seen.update(options)
-        whole = replace(made.verdict, faults=(), fault_counts={})
+        whole = replace(made.verdict, valid=True, faults=(), fault_counts={})
         return seen["verdict"] or whole
 
     monkeypatch.setattr(cellcolor.motion.plan, "plan_motion", motion)
@@ -201,7 +201,9 @@ def test_how_it_ends_is_what_the_judge_says(
     fault = found.faults[0]
     unplanned = replace(fault, kind="unplanned", text="a move was not planned")
     asked["unplanned"] = (3,)
-    asked["verdict"] = replace(found, faults=(unplanned,), fault_counts={"unplanned": 1})
+    asked["verdict"] = replace(
+        found, valid=False, faults=(unplanned,), fault_counts={"unplanned": 1}
+    )
     assert run("plan", scene, "-o", folder) == 3
     assert "must not drive" in capsys.readouterr().out
     jump = replace(fault, kind="jump", text="turns by 360 degrees")

@@ -18,8 +18,10 @@ from vertex_minima import vertex_minimum
 import cellcolor
 from cellcolor.arrays import Array, Index
 from cellcolor.configurations.labelling import from_configurations
+from cellcolor.configurations.matching import Nearest
 from cellcolor.data.candidate_table import CandidateTable
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
 from examples import examples
 
@@ -98,6 +100,18 @@ def test_built_scenes_without_their_robots_have_the_same_minima(path: Path) -> N
     branches=st.integers(1, 3),
 )
 def test_planted_branches_are_found(seed: int, columns: int, rows: int, branches: int) -> None:
+    check_planted(seed, columns, rows, branches)
+
+
+@pytest.mark.slow
+def test_planted_branches_of_2000_surfaces(record_property: pytest.RecordProperty) -> None:
+    rng = np.random.default_rng(0)
+    for seed in range(2000):
+        check_planted(seed, *rng.integers((2, 2, 1), (6, 5, 4)).tolist())
+        record_property("surfaces", seed + 1)
+
+
+def check_planted(seed: int, columns: int, rows: int, branches: int) -> None:
     """Branches that are far apart, each at some vertices; the minimum against brute force over the
     colorings of the planted surface."""
     rng = np.random.default_rng(seed)
@@ -126,6 +140,29 @@ def test_planted_branches_are_found(seed: int, columns: int, rows: int, branches
     minimum = cellcolor.solve(found.surface, search_space="surface").solution
     if minimum.proved_for_surface and there.sum(axis=1).max() ** len(vertices) < 20_000:
         assert minimum.segments == vertex_minimum(planted)
+
+
+@given(
+    first=st.floats(-3, 3),
+    others=st.lists(st.floats(-3, 3), min_size=1, max_size=5),
+    seed=st.integers(0, 2**32 - 1),
+)
+def test_what_is_clear_is_nearest_from_both_ends(
+    first: float, others: list[float], seed: int
+) -> None:
+    here = np.array([first, *others])
+    there = here + np.random.default_rng(seed).normal(0, 0.3, len(here))
+    joints, slots = np.stack([here, there])[:, :, None], len(here)
+    alike = np.zeros((2, slots), dtype=np.int64)
+    matching = Nearest(joints, alike == 0, alike, np.array([np.inf]), None, np.inf, never)
+    for _, a, b in matching.along(np.array([[0, 1]]), NEVER)[0].tolist():
+        assert np.argmin(np.abs(there - here[a])) == b
+        assert np.argmin(np.abs(here - there[b])) == a
+
+
+def never(*_: int) -> bool:
+    """What is not clear is not linked."""
+    return False
 
 
 def around(vertices: Array, turns: float) -> Array:

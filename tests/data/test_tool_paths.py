@@ -9,11 +9,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from documents import TOOL_PATHS
 
-from cellcolor.data.tool_paths import ToolPath, ToolPaths
+from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.errors import InputError
 
 PATHS = ToolPaths.from_document(TOOL_PATHS)
@@ -39,15 +38,6 @@ def test_lengths_are_those_of_the_steps() -> None:
     assert replace(PATHS, paths=(PATH, PATH)).length == pytest.approx(1.4)
     assert str(PATH) == "tool path on segment 0: 0.700 m, 3 points"
     assert str(PATHS) == "triangle: 1 tool path, contour, 0.70 m"
-
-
-def test_arrays_are_copies_that_nobody_can_change() -> None:
-    points = np.zeros((2, 3))
-    path = ToolPath(0, 0, points, [[0, 0, 1], [0, 0, 1]], [0])
-    points[:] = 7
-    assert (path.points == 0).all()
-    with pytest.raises(ValueError, match="read-only"):
-        path.points[0, 0] = 1
 
 
 BAD: dict[str, tuple[dict[str, Any], str]] = {

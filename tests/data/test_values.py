@@ -157,59 +157,45 @@ def test_values_say_what_they_are(value: object, text: str) -> None:
     assert str(value) == text
 
 
+def solved(status: str, segments: int | None, bound: int, surface_bound: int, **more: Any) -> Any:
+    """A solution in the search space paper with these numbers; without a division for None."""
+    return replace(
+        Solution.from_document(SOLUTION),
+        search_space="paper",
+        strands=1,
+        status=status,
+        segments=segments,
+        lift_offs=None if segments is None else segments - 1,
+        lower_bound=bound,
+        surface_lower_bound=surface_bound,
+        proved_for_surface=segments == surface_bound,
+        **{"bounds": None} | more | ({"cells": None} if segments is None else {}),
+    )
+
+
 @pytest.mark.parametrize(
-    ("changes", "text"),
+    ("numbers", "text"),
     [
         (
-            {"surface_lower_bound": 2, "proved_for_surface": True},
+            ("optimal", 2, 2, 2),
             "2 segments, 1 lift-off, optimal: proved for any division of the surface",
         ),
         (
-            {"surface_lower_bound": 1, "proved_for_surface": False},
+            ("optimal", 2, 2, 1),
             "2 segments, 1 lift-off, optimal in the search space paper; "
             "any division of the surface has at least 1",
         ),
         (
-            {
-                "status": "feasible",
-                "lower_bound": 1,
-                "surface_lower_bound": 1,
-                "proved_for_surface": False,
-            },
+            ("feasible", 2, 1, 1),
             "2 segments, 1 lift-off, not proved to be the fewest: at least 1 in the search "
             "space paper; any division of the surface has at least 1",
         ),
-        (
-            {
-                "status": "unknown",
-                "segments": None,
-                "lift_offs": None,
-                "cells": None,
-                "lower_bound": 1,
-                "surface_lower_bound": 1,
-                "proved_for_surface": False,
-            },
-            "no division found; at least 1 segment",
-        ),
+        (("unknown", None, 1, 1), "no division found; at least 1 segment"),
     ],
     ids=["proved", "paper", "feasible", "unknown"],
 )
-def test_a_solution_says_no_more_than_is_proved(changes: dict[str, Any], text: str) -> None:
-    found = Solution.from_document(SOLUTION)
-    solution = replace(
-        found,
-        search_space="paper",
-        strands=1,
-        status="optimal",
-        segments=2,
-        lift_offs=1,
-        lower_bound=2,
-        bounds=None,
-        surface_lower_bound=changes["surface_lower_bound"],
-        proved_for_surface=changes["proved_for_surface"],
-    )
-    solution = replace(solution, **changes)
-    assert str(solution) == text
+def test_a_solution_says_no_more_than_is_proved(numbers: tuple[Any, ...], text: str) -> None:
+    assert str(solved(*numbers)) == text
 
 
 @pytest.mark.parametrize(
@@ -223,27 +209,12 @@ def test_a_solution_says_no_more_than_is_proved(changes: dict[str, Any], text: s
 )
 def test_what_proves_a_minimum_of_the_search_space_alone(kind: str, by: str) -> None:
     bounds = (Bound("cover", 1, "surface"), Bound(kind, 2, "strands"))
-    found = replace(
-        Solution.from_document(SOLUTION),
-        search_space="paper",
-        strands=1,
-        segments=2,
-        lift_offs=1,
-        lower_bound=2,
-        surface_lower_bound=1,
-        proved_for_surface=False,
-        bounds=bounds,
-        model=ModelSize(4320, 25093),
-    )
+    size = ModelSize(4320, 25093)
+    found = solved("optimal", 2, 2, 1, bounds=bounds, model=size)
     space = f"optimal in the search space paper{by}; any division of the surface has at least 1"
     assert str(found) == f"2 segments, 1 lift-off, {space}"
     assert found.why_not_fewer() is None
-    wide = replace(
-        found,
-        surface_lower_bound=2,
-        proved_for_surface=True,
-        bounds=(Bound("crossings", 2, "surface"),),
-    )
+    wide = solved("optimal", 2, 2, 2, bounds=(Bound("crossings", 2, "surface"),), model=size)
     reason = wide.why_not_fewer()
     assert reason is not None and "model (4,320 variables, 25,093 constraints) has" in reason
     assert wide.proved_by is None
@@ -259,15 +230,7 @@ def test_every_kind_of_bound_for_the_surface_has_its_reason() -> None:
     assert for_strands == {"model", "search"}
     told = {kind for kind, own in KINDS.items() if own.by}
     assert told == for_strands | {"exact"}
-    found = replace(
-        Solution.from_document(SOLUTION),
-        segments=2,
-        lift_offs=1,
-        status="optimal",
-        lower_bound=2,
-        surface_lower_bound=2,
-        proved_for_surface=True,
-    )
+    found = solved("optimal", 2, 2, 2)
     for kind in KINDS.keys() - for_strands:
         bounds = (Bound("other", 1, "surface"), Bound(kind, 2, "surface"))
         assert ", because " in str(replace(found, bounds=bounds))

@@ -78,7 +78,8 @@ def test_a_keep_out_zone(tmp_path: Path) -> None:
         # The side file knows the new reason by its name.
         (tmp_path / "zone.npz").write_bytes(result.candidates.to_bytes())
         assert CandidateTable.read(tmp_path / "zone.npz") == result.candidates
-        twice = scene.with_test(scene.validity_test[0].varied(highest_m=(0.5, 1.0, 2.0)))
+        zone = scene.validity_test[0]
+        twice = scene.varied(validity_test=(zone, zone.varied(highest_m=(0.5, 1.0, 2.0))))
         assert prepare(twice).judge.reason_names == result.reason_names
 
 
@@ -102,12 +103,12 @@ def test_an_arm_with_four_joints(tmp_path: Path) -> None:
 
 def test_an_own_arm_whose_solutions_have_no_names(tmp_path: Path) -> None:
     with followed("extend", "A family of arms", tmp_path) as names:
-        named, scene = names["result"], names["scene"]
+        named, scene = names["result"].report, names["scene"]
         sys.modules["pitch_arm"].PitchArm.branches = ()
         result = build_surface(scene)
         assert result.branches == ("sheet-1", "sheet-2")
         assert "none found on this part" in str(result.report)
-        sizes = [sorted(c.vertices for c in each.report.colors) for each in (result, named)]
+        sizes = [sorted(c.vertices for c in each.colors) for each in (result.report, named)]
         assert sizes[0] == sizes[1] and len(sizes[0]) >= 2
 
 
@@ -143,7 +144,7 @@ def test_no_reason_has_two_meanings(tmp_path: Path) -> None:
         zone = names["scene"].validity_test[0]
         type(zone).name = "torque"
         with pytest.raises(InputError, match="a reason 'torque' already") as caught:
-            prepare(names["scene"])
+            Scene.read("torus.toml")
         assert (caught.value.file, caught.value.field) == ("torus.toml", "validity_test[0]")
 
 

@@ -88,7 +88,7 @@ def test_a_scene_is_prepared_once(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = shipped("square", 100)
     planned = cellcolor.plan(scene, spacing_m=0.05)
     assert len(made) == 1
-    assert planned.built.prepared.workplace is made[0].workplace
+    assert planned.built.prepared.tip is made[0].tip
     scene = scene.with_setup(scene.setup.varied(motion={"spacing_m": 0.05}))
     assert cellcolor.check(scene, planned.trajectory).valid
     assert len(made) == 2

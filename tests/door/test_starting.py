@@ -97,7 +97,7 @@ def test_the_tool_is_turned_onto_the_last_axis(rpy: tuple[float, float, float], 
     assert usual in text
     turned = " ".join(map(repr, rpy))
     text = text.replace(usual, f'<origin xyz="{xyz}" rpy="{turned}"/>')
-    line = mount_line(parse_urdf(text, Path("arm.urdf")), "tool0")
+    line = mount_line(parse_urdf(text, Path("arm.urdf")), "tool0", {})
     mount = tomllib.loads(line).get("mount_rpy_rad", [0.0, 0.0, 0.0])
     tool = (Rotation.from_euler("xyz", rpy) * Rotation.from_euler("xyz", mount)).apply([0, 0, 1])
     outward = -1.0 if xyz.startswith("-") else 1.0
@@ -362,6 +362,19 @@ def test_under_an_arm_that_hangs(plate: Path, tmp_path: Path) -> None:
     made = cellcolor.new(plate, arm, tmp_path / "new")
     assert made.reachable_share > 0.9
     assert 1.9 < Scene.read(made.scene).placement.position_m[2] < 2.7
+
+
+@pytest.mark.parametrize(("yaw", "turned"), [(90, True), (180, False), (-90, True), (0, True)])
+def test_an_upright_part_is_turned_to_the_robot(
+    yaw: float, turned: bool, plate: Path, tmp_path: Path, capsys: Capture
+) -> None:
+    mesh = trimesh.load_mesh(plate)
+    mesh.apply_transform(trimesh.transformations.euler_matrix(0, np.pi / 2, np.radians(yaw)))
+    mesh.export(tmp_path / "upright.stl")
+    printed = new(capsys, tmp_path / "upright.stl", ROBOTS / "ur5.urdf", tmp_path / "new")
+    assert ("turned by" in printed) == turned
+    normals = prepare(Scene.read(tmp_path / "new" / "scene.toml")).surface.normals
+    assert np.allclose(normals.mean(axis=0)[[0, 1]], [-1, 0], atol=0.1)
 
 
 def test_the_home_is_over_the_part_and_well_conditioned(plate: Path, tmp_path: Path) -> None:

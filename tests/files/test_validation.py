@@ -114,16 +114,6 @@ def test_colors_of_vertices_out_of_order_are_one_cell() -> None:
     assert [cell.colors for cell in decompose(mixed).cells] == [(0, 1)]
 
 
-def test_arrays_are_the_surface_s_own() -> None:
-    mesh = drawn("aa aa", {"a": [0]})
-    points = mesh.vertices.copy()
-    made = LabelledSurface(mesh.name, mesh.colors, points, mesh.faces, mesh.vertex_colors)
-    points[0, 0] = np.nan
-    assert np.isfinite(made.vertices).all()
-    with pytest.raises(ValueError, match="read-only"):
-        made.vertices[0, 0] = 1.0
-
-
 def test_graphs_and_solutions_are_those_of_the_file() -> None:
     one, two = np.int64(1), np.int16(2)
     made: Any = Instance(
@@ -219,19 +209,14 @@ def test_refused(make: Callable[[], object], field: str, message: str) -> None:
     ("member", "content", "field"),
     [
         ("vertices", np.zeros((3, 2)), "vertices"),
-        ("vertices", np.zeros((3, 3), dtype=bool), "vertices"),
         ("vertices", [[0, 0, 0], [1, 0, True], [0, 1, 0]], "vertices[1][2]"),
-        ("vertices", [[0, 0, 0], [1, 0, np.inf], [0, 1, 0]], "vertices[1][2]"),
         ("vertices", None, "vertices"),
-        ("faces", np.array([[0.0, 1.0, 2.0]]), "faces"),
         ("faces", [[0, 1, 2.0]], "faces[0][2]"),
         ("faces", [[0, 1, 10**30]], "faces"),
         ("faces", "012", "faces"),
         ("vertex_colors", [[0], [0], [0.0]], "vertex_colors[2][0]"),
         ("vertex_colors", [[0], [0], 0], "vertex_colors[2]"),
-        ("vertex_colors", [[0], [0], [0, 0]], "vertex_colors[2]"),
         ("colors", "red", "colors"),
-        ("cracks", [(0, 1, (0,))], "cracks[0]"),
         ("meta", {"a": float("nan")}, "meta"),
         ("name", 7, "name"),
     ],

@@ -21,8 +21,6 @@ from pages import DRAWN, saved, small_wok
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.errors import InputError
-from cellcolor.files import temporary
-from cellcolor.files.temporary import Temporary, remove_strays
 from cellcolor.files.writing import (
     HTML,
     PNG,
@@ -306,61 +304,3 @@ class TestTogether:
             refused(["build", scene, "-o", out], capsys, name, "not overwritten")
             assert (tmp_path / name).read_text() == "mine"
             (tmp_path / name).write_bytes(before)
-
-
-class TestStrays:
-    def stray(self, folder: Path) -> Path:
-        (found,) = (path for path in folder.iterdir() if path.name.startswith(".cellcolor-"))
-        return found
-
-    def test_of_the_dead_are_removed_and_of_the_living_kept(self, tmp_path: Path) -> None:
-        script = (
-            "import sys, time; from pathlib import Path\n"
-            "from cellcolor.files.temporary import Temporary\n"
-            "Temporary(Path(sys.argv[1])); held = Temporary(Path(sys.argv[1]))\n"
-            "print(flush=True); time.sleep(60)\n"
-        )
-        path = tmp_path / "x.json"
-        process = subprocess.Popen([sys.executable, "-c", script, path], stdout=subprocess.PIPE)
-        assert process.stdout is not None
-        process.stdout.readline()
-        try:
-            # The first of the two is garbage, closed and so unlocked, the other is being written.
-            write([instance_at(path)])
-            assert self.stray(tmp_path)
-        finally:
-            process.kill()
-            process.wait()
-        write([instance_at(tmp_path / "y.json")])
-        assert sorted(tmp_path.iterdir()) == [path, tmp_path / "y.json"]
-
-    def test_files_like_them_are_kept(self, tmp_path: Path) -> None:
-        names = [".cellcolor-x.tmp", "cellcolor-0123456789abcdef.tmp", ".cellcolor.tmp"]
-        for name in names:
-            (tmp_path / name).touch()
-        (tmp_path / ".cellcolor-0123456789abcdef.tmp").mkdir()
-        os.mkfifo(tmp_path / ".cellcolor-1123456789abcdef.tmp")
-        (tmp_path / ".cellcolor-2123456789abcdef.tmp").symlink_to(names[0])
-        remove_strays(tmp_path)
-        assert len(list(tmp_path.iterdir())) == 6
-
-    def test_taken_between_making_and_locking(
-        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        """Whoever tidies at that moment takes the file for a stray; another one is made."""
-        lock, taken = temporary._lock, []
-
-        def late(handle: int, wait: bool) -> bool:
-            if wait and not taken:
-                taken.append(self.stray(tmp_path))
-                remove_strays(tmp_path)
-            return lock(handle, wait)
-
-        monkeypatch.setattr(temporary, "_lock", late)
-        made = Temporary(tmp_path / "x")
-        assert taken and self.stray(tmp_path) != taken[0]
-        made.fill([b"new"])
-        made.rename()
-        made.discard()
-        assert (tmp_path / "x").read_bytes() == b"new"
-        assert len(list(tmp_path.iterdir())) == 1

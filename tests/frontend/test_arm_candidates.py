@@ -110,12 +110,11 @@ def test_candidates_against_pinocchio_and_coal(name: str, vertices: int, count: 
     robot, ground = prepared.robot, scene.ground
     assert ground is not None
     exempt = scene.setup.robot.may_touch_ground
-    place = prepared.workplace
     verdicts = {
-        "ground": place.with_ground(joints),
-        "robot": place.with_itself(joints),
-        "object": place.with_object(joints),
-    } | ({"obstacle": place.with_obstacles(joints)} if scene.obstacle else {})
+        "ground": prepared.contacts["ground"](joints),
+        "robot": prepared.contacts["self collision"](joints),
+        "object": prepared.contacts["object collision"](joints),
+    } | ({"obstacle": prepared.contacts["obstacle collision"](joints)} if scene.obstacle else {})
     posts = []
     for post in scene.obstacle:
         assert isinstance(post, CylinderObstacle) and post.rpy_rad == (0.0, 0.0, 0.0)

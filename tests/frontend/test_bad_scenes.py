@@ -1,4 +1,4 @@
-"""Bad scenes and meshes through the command line: exit code 2 and one line with file and field."""
+"""Bad scenes, setups and meshes: one line with file and field, and exit code 2."""
 
 from __future__ import annotations
 
@@ -12,9 +12,12 @@ from dirty import BOX, OUTWARD, obj
 from shipped import ROBOTS, WOK
 
 from cellcolor.cli import main
+from cellcolor.errors import InputError
+from cellcolor.frontend import build_surface
 
-SCENE, SETUP, ARM, TOOL, MESH = (
+SCENE, CAP, SETUP, ARM, TOOL, MESH = (
     "scene.toml",
+    "wok.toml",
     "ur5_polishing.toml",
     "ur5.urdf",
     "polishing_tool.urdf",
@@ -24,13 +27,14 @@ SCENE, SETUP, ARM, TOOL, MESH = (
 
 @pytest.fixture
 def files(tmp_path: Path) -> Path:
-    """A scene with a mesh object and everything it names, in one folder."""
+    """A scene with a mesh object, one with a cap, and everything they name, in one folder."""
     for name in (SETUP, ARM, TOOL):
         shutil.copy(ROBOTS / name, tmp_path)
     text = WOK.read_text().replace("../../models/robots/", "")
     table = f'[object]\nkind = "mesh"\nfile = "{MESH}"\nmeters_per_unit = 0.1\n\n'
     start, end = text.index("[object]"), text.index("[placement]")
     (tmp_path / SCENE).write_text(text[:start] + table + text[end:])
+    (tmp_path / CAP).write_text(text)
     (tmp_path / MESH).write_text(obj(BOX, OUTWARD))
     return tmp_path
 
@@ -64,8 +68,6 @@ CASES = {
                               "no.stl", None),
     "units of zero": ((SCENE, r"meters_per_unit = 0.1", "meters_per_unit = 0.0"), SCENE,
                       "object.meters_per_unit"),
-    "not TOML": ((SCENE, r"name = ", "name "), SCENE, None),
-    "setup missing": ((SCENE, f'"{SETUP}"', '"none.toml"'), "none.toml", None),
     "switch misspelled": ((SETUP, r"$", "\n[constraints]\ncolision = false\n"), SETUP,
                           "constraints.colision"),
     "sliver share above one": ((SETUP, r"uncover_below_share = 0.005",
@@ -88,9 +90,74 @@ CASES = {
     "flange missing": ((SETUP, '"wrist_3_link"', '"hand"'), ARM, "link[hand]"),
 }  # fmt: skip
 
+NO_MESH = '[object]\nkind = "mesh"\nfile = "none.stl"\nmeters_per_unit = 1.0\n[placement]'
+# The file that is edited, a pattern and its replacement; the file that is blamed, the field, and
+# what is said.
+FAULTS = [
+    (CAP, r"seed = 1", "sed = 1", CAP, "object.sed", "unknown key"),
+    (CAP, r"\[ground\]", "[floor]", CAP, "floor", "unknown key"),
+    (CAP, r"radius_m = 0.20", "", CAP, "object.radius_m", "is missing"),
+    (CAP, r"radius_m = 0.20", "radius_m = nan", CAP, "object.radius_m", "finite"),
+    (CAP, r"radius_m = 0.20", "radius_m = inf", CAP, "object.radius_m", "finite"),
+    (CAP, r"radius_m = 0.20", "radius_m = -0.2", CAP, "object.radius_m", "greater"),
+    (CAP, r"radius_m = 0.20", 'radius_m = "0.2"', CAP, "object.radius_m", "number"),
+    (CAP, r"half_angle_rad = 1\.", "half_angle_rad = 65.", CAP, "object.half_angle_rad",
+     "65.1345 looks like degrees: 1.1368 rad"),
+    (CAP, r"jitter = 0.15", "jitter = 0.6", CAP, "object.jitter", "less"),
+    (CAP, r"target_vertices = 1000", "target_vertices = 20.5", CAP,
+     "object.target_vertices", "integer"),
+    (CAP, r'kind = "spherical-cap"', 'kind = "torus"', CAP, "object", "torus"),
+    (CAP, r"rpy_rad = .*?\]", "rpy_rad = [0.0, 0.0]", CAP, "placement.rpy_rad[2]",
+     "is missing"),
+    (CAP, r"position_m = .*?\]", "position_m = [0.0, nan, 0.0]", CAP,
+     "placement.position_m[1]", "finite"),
+    (CAP, r"\[placement\].*?\[ground", "[ground", CAP, "placement", "is missing"),
+    (CAP, r"$", '\n[[obstacle]]\nkind = "box"\nsize_m = [1.0, 1.0, 0.0]\n'
+     "position_m = [0.0, 0.0, 0.0]", CAP, "obstacle[0].size_m[2]", "greater"),
+    (CAP, r"$", '\n[[obstacle]]\nkind = "sphere"\nradius_m = 0.1\n', CAP,
+     "obstacle[0].position_m", "is missing"),
+    (CAP, r"\[placement\]", "[placement", CAP, None, "not TOML"),
+    (CAP, r"\[object\].*?\[placement\]", NO_MESH, "none.stl", None, "no such mesh file"),
+    (CAP, r'"ur5_polishing.toml"', '"none.toml"', "none.toml", None, "No such file"),
+    (SETUP, r"normal_force_n", "normal_force", SETUP, "task.normal_force",
+     "unknown key; is 'normal_force_n' meant?"),
+    (CAP, r"\[placement\]", "[placment]", CAP, "placment",
+     "unknown key; is 'placement' meant?"),
+    (SETUP, r"base_step_rad = 0.1", "base_step_rad = 0.0", SETUP,
+     "continuity.base_step_rad", "greater"),
+    (SETUP, r"probe_spacing_m", "border_length_m = 0.01\nprobe_spacing_m", SETUP,
+     "continuity.border_length_m", "no longer known: for exact borders give .* max_edge_m"),
+    (SETUP, r'"ur5.urdf"', '"ur7.urdf"', "ur7.urdf", None, "No such file"),
+    (SETUP, r'"tool_tip"', '"nose"', "polishing_tool.urdf", "link[nose]", "tip link"),
+    (SETUP, r'"shoulder_link"\]', '"elbow"]', SETUP, "robot.may_touch_ground", "'elbow'"),
+    (SETUP, r"joint_6_rad = 0.0", "joint_6_rad = 9.0", SETUP, "robot.locked_joint_6_rad",
+     "outside the limits"),
+]  # fmt: skip
 
-def test_there_are_twenty() -> None:
-    assert len(CASES) >= 20
+
+@pytest.mark.parametrize(("file", "pattern", "replacement", "blamed", "field", "message"), FAULTS)
+def test_faults_are_named(
+    files: Path,
+    file: str,
+    pattern: str,
+    replacement: str,
+    blamed: str,
+    field: str | None,
+    message: str,
+) -> None:
+    edit(files / file, pattern, replacement)
+    with pytest.raises(InputError, match=message) as caught:
+        build_surface(files / CAP)
+    assert (caught.value.file, caught.value.field) == (str(files / blamed), field)
+    assert "\n" not in str(caught.value)
+
+
+def edit(file: Path, pattern: str, replacement: str) -> None:
+    text, found = re.subn(
+        pattern, lambda _: replacement, file.read_text(), count=1, flags=re.DOTALL
+    )
+    assert found
+    file.write_text(text)
 
 
 def test_the_scene_itself_is_good(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -101,15 +168,7 @@ def test_the_scene_itself_is_good(files: Path, capsys: pytest.CaptureFixture[str
 @pytest.mark.parametrize("name", CASES)
 def test_one_clear_line(name: str, files: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (file, pattern, replacement), blamed, field = CASES[name]
-    text, found = re.subn(
-        pattern,
-        lambda _: replacement,
-        (files / file).read_text(),
-        count=1,
-        flags=re.DOTALL,
-    )
-    assert found
-    (files / file).write_text(text)
+    edit(files / file, pattern, replacement)
     assert main(["build", str(files / SCENE), "-o", str(files / "out.json")]) == 2
     printed = capsys.readouterr()
     assert printed.out == ""

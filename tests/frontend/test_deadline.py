@@ -26,7 +26,7 @@ STAGES = [
     "continuity",
     "validity between vertices",
     "colors and cracks",
-    "report",
+    "surface",
 ]
 
 

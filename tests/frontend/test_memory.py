@@ -1,10 +1,10 @@
-"""What steps of the front end take beside what they return, held against what they may take."""
+"""What a build takes beside what it returns, and what is refused before it is begun."""
 
 from __future__ import annotations
 
 import tracemalloc
-from collections.abc import Callable, Iterator
-from functools import cache, partial
+from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 import pytest
@@ -14,18 +14,9 @@ from scipy.spatial import cKDTree
 from shipped import shipped
 
 from cellcolor import memory
-from cellcolor.deadline import NEVER
 from cellcolor.errors import TooLarge
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.arm.calibrated import missing
-from cellcolor.frontend.arm.newton import polished
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.frontend.reach.between import remains_valid
-from cellcolor.frontend.reach.continuity import link
-from cellcolor.frontend.reach.tracking import Tracker
-from cellcolor.frontend.reach.validity import Candidates
-from cellcolor.trajectory_checker.dense import poses_of
-from cellcolor.trajectory_checker.fine_mesh import refined
 from cellcolor.trajectory_checker.repeated import _near
 
 pytestmark = pytest.mark.second
@@ -40,15 +31,6 @@ def prepared(arm: str) -> PreparedScene:
     return prepare(shipped(f"../arms/{arm}"))
 
 
-@cache
-def solutions(arm: str, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points, directions and all solutions there: those of the vertices again and again."""
-    scene = prepared(arm)
-    rows = np.arange(count) % len(scene.surface.vertices)
-    points, directions = scene.surface.vertices[rows], -scene.surface.normals[rows]
-    return points, directions, scene.arm.inverse(points, directions)
-
-
 def temporary(step: Step) -> int:
     """What numpy holds at one time, beside what was there before and what is there after."""
     tracemalloc.start()
@@ -59,105 +41,6 @@ def temporary(step: Step) -> int:
         tracemalloc.stop()
     assert result is not None
     return peak - kept
-
-
-def of_arm(arm: str) -> Iterator[tuple[str, Step]]:
-    scene = prepared(arm)
-    count = 500 if arm == "ur5e_calibrated_wok" else 6_000
-    points, directions, found = solutions(arm, count)
-    some = found[~np.isnan(found[:, :, 0])][:count]
-    at = len(some)
-    yield "inverse", lambda: scene.arm.inverse(points, directions)
-    first = np.zeros(len(points), dtype=np.intp)
-    yield "follow", lambda: scene.arm.follow(points, directions, first)
-    yield (
-        "polished",
-        lambda: polished(scene.robot, some[:, None] + 1e-3, points[:at], directions[:at], 1.0),
-    )
-    yield "missing", lambda: missing(scene.robot, found)
-    yield "judge", lambda: scene.judge(some)
-    yield "described", lambda: Tracker(scene.robot, scene.arm.measure).described(found)
-    yield "poses", lambda: poses_of(scene.robot, some, NEVER)
-
-
-ARMS = ("ur5e_wok", "ur5e_calibrated_wok", pytest.param("kr6_wok", marks=pytest.mark.slow))
-OF_ARM = ("inverse", "follow", "polished", "missing", "judge", "described", "poses")
-
-
-@pytest.mark.parametrize("step", OF_ARM)
-@pytest.mark.parametrize("arm", ARMS)
-def test_steps_with_configurations(arm: str, step: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    work = dict(of_arm(arm))[step]
-    whole = work()
-    monkeypatch.setattr(memory, "CHUNK", 300)
-    # What solves a calibrated arm works in parts within the parts of who asks.
-    deep = 2 if step in ("inverse", "follow") else 1
-    assert temporary(work) <= deep * SMALL
-    if isinstance(whole, np.ndarray):
-        assert np.array_equal(np.asarray(work()), whole, equal_nan=True)
-
-
-def located() -> object:
-    scene = prepared("ur5e_wok")
-    fine = refined(scene.surface, 0.01, NEVER)
-    fine._tree, fine._facing, fine._radius  # noqa: B018  # these are kept
-    return partial(fine.locate, fine.vertices, -scene.surface.normals[[0] * len(fine.vertices)])
-
-
-def near() -> object:
-    points = np.random.default_rng(0).uniform(0, 1, (3_000, 3))
-    tree = cKDTree(points)
-    return [len(one) for one, _ in _near(tree, points, 0.3)]
-
-
-def test_steps_with_faces(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(memory, "CHUNK", 300)
-    locate = located()
-    assert callable(locate)
-    # Of all points together it keeps numbers of triangles, weights, places and normals.
-    points = len(locate.args[0])  # type: ignore[attr-defined]
-    assert temporary(locate) <= SMALL + 512 * points
-    assert temporary(near) <= SMALL
-
-
-def test_points_between_vertices(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Also where few edges are cut into many pieces, and where pieces are cut again."""
-    monkeypatch.setattr(memory, "CHUNK", 300)
-    surface = prepared("ur5e_wok").surface
-    edges = surface.edges()[:50]
-    ends = np.tile(1.5 * surface.vertices[:, None], (16, 1, 1, 1))
-    largest = 0
-
-    def test(points: np.ndarray, _: object, __: object) -> tuple[np.ndarray, np.ndarray]:
-        nonlocal largest
-        largest = max(largest, len(points))
-        return np.ones(len(points), dtype=bool), np.tile(points, (16, 1, 1)) * 1.5
-
-    def step() -> object:
-        branches, pieces = np.zeros(len(edges), dtype=np.intp), np.full(len(edges), 200)
-        return remains_valid(surface, edges, branches, pieces, ends, np.full(16, 1e-4), test)
-
-    assert temporary(step) <= SMALL and 200 < largest <= 300
-
-
-def test_links(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = prepared("ur5e_wok")
-    surface, count = scene.surface, len(scene.surface.vertices)
-    verdicts = scene.judge(solutions("ur5e_wok", count)[2].reshape(-1, 6))
-    candidates = Candidates(
-        verdicts.configurations.reshape(count, -1, 6),
-        verdicts.reasons.reshape(count, -1),
-        verdicts.determinants.reshape(count, -1),
-        scene.judge.reason_names,
-    )
-    edges = surface.edges()
-    step = partial(link, surface, edges, candidates, scene.arm.measure, None, probe=scene.arm.probe)
-    whole = step()
-    monkeypatch.setattr(memory, "CHUNK", 300)
-    # Who calls gives so many edges as fit; here are all, whose ends and motions stay beside.
-    ends = 8 * len(edges) * 256 * 7
-    assert temporary(step) <= ends + 3 * SMALL
-    assert (step() == whole).all()
 
 
 @given(st.lists(st.integers(0, 50), max_size=60), st.integers(1, 90))
@@ -181,13 +64,6 @@ def test_more_than_the_machine_has_is_refused(monkeypatch: pytest.MonkeyPatch) -
         TooLarge, match=r"judging 100,000 configurations of the arm would take 0.0 GB"
     ):
         prepared("ur5e_wok").judge(np.full((100_000, 6), np.nan))
-    with pytest.raises(TooLarge, match="on one mesh edge would take"):
-        surface = prepared("ur5e_wok").surface
-        edges, one = surface.edges()[:1], np.zeros(1, dtype=np.intp)
-        ends = surface.vertices[None, :, None]
-        remains_valid(
-            surface, edges, one, np.array([10**6]), ends, np.ones(1), lambda *_: pytest.fail()
-        )
     with pytest.raises(TooLarge, match="passes the same place too often"):
         points = np.zeros((400, 3))
         next(_near(cKDTree(points), points, 1.0))

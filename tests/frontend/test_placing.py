@@ -68,7 +68,7 @@ def test_nothing_is_read_or_built_again(
         monkeypatch.setattr(where, name, never)
     moved = wok.at(Placement(position_m=(0.5, 0.1, 0.2)))
     assert moved.arm is wok.arm
-    assert moved.workplace.obstacles is wok.workplace.obstacles
+    assert moved.obstacles is wok.obstacles
     # A vertex of the part's own frame, moved by hand.
     expected = wok.part.surface.vertices[7] + [0.5, 0.1, 0.2]
     assert np.allclose(moved.surface.vertices[7], expected, rtol=0, atol=1e-15)

@@ -64,9 +64,12 @@ def test_one_hemisphere_over_one_ground_in_two_poses() -> None:
 
 
 @pytest.mark.parametrize("name", LIFT_OFFS)
-def test_lift_offs(name: str) -> None:
-    result = built(name, 500)
-    solution = solve(decompose(result.surface), Options(deadline=Deadline.after(60), workers=2))
+@pytest.mark.parametrize(
+    "vertices", [500, *(pytest.param(fine, marks=pytest.mark.slow) for fine in (2000, 4000))]
+)
+def test_lift_offs(name: str, vertices: int) -> None:
+    surface = built(name, vertices).surface
+    solution = solve(decompose(surface), Options(deadline=Deadline.after(300), workers=2))
     assert solution.status == "optimal" and solution.proved_for_surface
     assert solution.lift_offs == LIFT_OFFS[name]
 
@@ -92,15 +95,6 @@ def test_stored_surface_is_what_the_scene_gives(name: str) -> None:
         again.vertex_colors,
         again.cracks,
     )
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", LIFT_OFFS)
-@pytest.mark.parametrize("vertices", [2000, 4000])
-def test_lift_offs_at_higher_resolutions(name: str, vertices: int) -> None:
-    surface = built(name, vertices).surface
-    solution = solve(decompose(surface), Options(deadline=Deadline.after(300), workers=2))
-    assert solution.status == "optimal" and solution.lift_offs == LIFT_OFFS[name]
 
 
 @pytest.mark.parametrize("name", LIFT_OFFS)

@@ -13,10 +13,10 @@ from shipped import shipped
 import cellcolor
 from cellcolor.deadline import NEVER
 from cellcolor.frontend import Scene
+from cellcolor.frontend.build import OFF, build_prepared
 from cellcolor.frontend.parts.placement import Placement, Tolerance
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import OFF, judged
 from examples import examples
 
 NUMBERS = st.floats(-1, 1)
@@ -82,22 +82,22 @@ def scene() -> Scene:
 def test_colors_hold_wherever_the_part_may_stand(scene: Scene) -> None:
     """Against the scene with each displacement written in, built by itself."""
     asked = prepare(scene.varied(tolerance=OFTEN))
-    stages = judged(asked, StageClock(NEVER, None))
-    own = judged(prepare(scene), StageClock(NEVER, None))
-    valid, linked = own.candidates.valid.copy(), own.links.linked.copy()
+    built = build_prepared(asked, StageClock(NEVER, None))
+    own = build_prepared(prepare(scene), StageClock(NEVER, None))
+    valid, linked = own.verdicts.valid.copy(), own.all_colors.linked.copy()
     places = [there.scene.placement for there in asked.displaced()]
     assert len(places) == OFTEN["samples"]
     for placement in places:
-        there = judged(prepare(scene.varied(placement=placement)), StageClock(NEVER, None))
-        valid &= there.candidates.valid
-        linked &= there.links.linked
-    assert (stages.candidates.valid == valid).all()
-    assert (stages.links.linked == linked).all()
-    lost = own.candidates.valid & ~valid
+        there = build_prepared(prepare(scene.varied(placement=placement)), StageClock(NEVER, None))
+        valid &= there.verdicts.valid
+        linked &= there.all_colors.linked
+    assert (built.verdicts.valid == valid).all()
+    assert (built.all_colors.linked == linked).all()
+    lost = own.verdicts.valid & ~valid
     assert lost.any()
-    off = stages.candidates.reason_names.index(OFF)
-    assert ((stages.candidates.reasons == off) == lost).all()
-    assert (stages.candidates.reasons[~lost] == own.candidates.reasons[~lost]).all()
+    off = built.verdicts.reason_names.index(OFF)
+    assert ((built.verdicts.reasons == off) == lost).all()
+    assert (built.verdicts.reasons[~lost] == own.verdicts.reasons[~lost]).all()
 
 
 def test_a_part_is_taken_along_as_it_is_placed(scene: Scene) -> None:

@@ -16,9 +16,9 @@ import cellcolor
 from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
 from cellcolor.frontend import Setup, build_surface
+from cellcolor.frontend.build import TURN_NOT_DEFINED
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.setup import Turn
-from cellcolor.frontend.stages import TURN_NOT_DEFINED
 
 DOWN = np.array([0.0, 0.0, -1.0])
 LIMITS = (-0.4, 0.0)  # rad, of joint 6: so narrow that no turn alone reaches the whole plate
@@ -79,16 +79,15 @@ def test_no_edge_through_a_place_without_a_turn_is_linked() -> None:
     i, j = edges[inner].tolist()
     x, y, _ = free.surface.vertices[[i, j]].mean(axis=0).tolist()
     through = build_surface(plate(setup({"towards_m": (x, y, 0.3)})))
-    links = through.stages.links
-    assert (links.edges[inner] == [i, j]).all()
+    linked = through.coloring.linked
     both = (through.reasons[i] == VALID) & (through.reasons[j] == VALID)
-    assert both.any() and not links.linked[inner].any()
+    assert both.any() and not linked[inner].any()
     # Beside it by 20 mm the same edge is smooth, though fast.
     across = np.array([-(free.surface.vertices[j] - free.surface.vertices[i])[1], 0])
     across[1] = (free.surface.vertices[j] - free.surface.vertices[i])[0]
     x, y = (np.array([x, y]) + 0.02 * across / np.linalg.norm(across)).tolist()
     beside = build_surface(plate(setup({"towards_m": (x, y, 0.3)})))
-    assert beside.stages.links.linked[inner].any()
+    assert beside.coloring.linked[inner].any()
 
 
 def test_solutions_without_names_have_the_turn_too() -> None:

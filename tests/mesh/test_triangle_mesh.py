@@ -39,7 +39,6 @@ def test_edges_and_sides(mesh: TriangleMesh) -> None:
     assert [tuple(ends) for ends in mesh.edges.tolist()] == list(expected)
     assert mesh.triangles_at.tolist() == [len(sides) for sides in expected.values()]
     for number, sides in enumerate(expected.values()):
-        assert mesh.sides_of(number).tolist() == sides
         assert (mesh.edge_of_side.ravel()[sides] == number).all()
     twos = [(number, sides) for number, sides in enumerate(expected.values()) if len(sides) == 2]
     edges, sides_of_two = mesh.pairs

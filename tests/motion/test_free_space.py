@@ -98,10 +98,9 @@ def test_what_is_clear_with_more_room_is_clear_with_less(scene: str, clearance: 
 def test_an_arm_without_any_body_is_free_but_for_its_tip() -> None:
     prepared = prepare(shipped("wok", 200))
     bare = replace(prepared.robot, bodies=(), tested_pairs=())
-    place = prepared.workplace
-    place = replace(place, arm=replace(place.arm, robot=bare))
+    armless = replace(prepared, arm=replace(prepared.arm, robot=bare))
     joints = np.random.default_rng(8).uniform(-np.pi, np.pi, (300, 6))
-    clear = FreeSpace(replace(prepared, workplace=place), CLEARANCE).clear(joints)
+    clear = FreeSpace(armless, CLEARANCE).clear(joints)
     assert clear.any() and not clear.all()
     assert clear[FreeSpace(prepared, CLEARANCE).clear(joints)].all()
 

@@ -12,9 +12,8 @@ from shipped import ROBOTS, shipped
 import cellcolor
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.contact.engine import pairs_of
+from cellcolor.frontend.contact.engine import always_touching, pairs_of
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.frontend.reach.always_touching import always_touching
 from cellcolor.frontend.scene import Scene
 from cellcolor.motion.free_space import FreeSpace
 from cellcolor.motion.home import home_of

@@ -47,11 +47,11 @@ def by_chance(wok: BuildResult, seed: int) -> ScenePainting:
 
 def reaches(prepared: PreparedScene, found: ScenePainting) -> bool:
     """Whether every painted vertex's color is valid there: from points and normals alone."""
-    branch = np.array(found.built.stages.cleaned.coloring.branch)
+    branch = np.array(found.built.coloring.branch)
     painted = found.painted
     own = [v for v, color in enumerate(painted.plan.vertex_colors) if color is not None]
     branches = branch[[painted.plan.vertex_colors[v] for v in own]]
-    normals = unit(painted.interpolated(found.built.stages.surface.normals))
+    normals = unit(painted.interpolated(found.built.prepared.surface.normals))
     joints = prepared.arm.follow(painted.surface.vertices[own], -normals[own], branches)
     return bool((prepared.judge(joints).reasons == VALID).all())
 
@@ -114,7 +114,7 @@ def test_in_the_end_what_is_refused_is_told(
 def test_costs_by_hand(wok: BuildResult) -> None:
     """Each valid candidate by itself: every turn of every joint tried, and its determinant."""
     prepared, built = wok.prepared, wok
-    candidates, robot = built.stages.candidates, prepared.robot
+    candidates, robot = built.verdicts, prepared.robot
     cost = color_costs(robot, candidates)
     rows, branches = np.nonzero(candidates.valid)
     joints = candidates.configurations[rows, branches]
@@ -138,7 +138,7 @@ def test_a_joint_without_limits_has_room_everywhere(wok: BuildResult) -> None:
     far = np.full(6, 1e4)
     endless = replace(prepared.robot, lower=np.full(6, -np.inf), upper=np.full(6, np.inf))
     wide = replace(prepared.robot, lower=-far, upper=far)
-    candidates = built.stages.candidates
+    candidates = built.verdicts
     assert (color_costs(endless, candidates) == color_costs(wide, candidates)).all()
     assert np.isfinite(color_costs(endless, candidates)).all()
 
@@ -158,7 +158,7 @@ def test_what_is_left_alone_stays_so_on_a_finer_surface(wok: BuildResult) -> Non
     assert (
         beyond.max()
         < np.median(wok.surface.vertices[:, 0])
-        + wok.stages.surface.lengths(wok.stages.surface.edges()).max()
+        + wok.prepared.surface.lengths(wok.prepared.surface.edges()).max()
     )
 
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
 from meshes import drawn, surfaces
-from planners import SORTS, contradictions, segments_counted, valid_plans
+from planners import SORTS, contradictions, valid_plans
 from planted_plans import PLANTERS, Case, Planted, caught
 
 import cellcolor
@@ -69,12 +69,6 @@ def test_no_valid_plan_contradicts_its_verdict(surface: LabelledSurface, seed: i
             assert contradictions(judge, colors, verdict, oracle.bounds.upper) == []
 
 
-def test_every_sort_of_plan_comes_in_turn() -> None:
-    plans = valid_plans(cellcolor.Oracle(ROW, workers=1), np.random.default_rng(0))
-    sorts = [sort for _, (sort, _) in zip(range(2 * len(SORTS) - 1), plans, strict=False)]
-    assert sorts == [*SORTS, *(sort for sort in SORTS if sort != "greedy")]
-
-
 def test_what_contradicts_a_verdict_is_seen() -> None:
     oracle = cellcolor.Oracle(ROW, workers=1)
     colors = [RED, RED, BLUE, BLUE, RED, RED] * 3
@@ -89,13 +83,6 @@ def test_what_contradicts_a_verdict_is_seen() -> None:
     assert contradictions(oracle, colors, replace(verdict, improvement=None), 1)
     refused = oracle.judge([BLUE] * 18)
     assert contradictions(oracle, colors, refused, 1)[0].startswith("refused: not valid")
-
-
-def test_networkx_counts_cracks_and_islands() -> None:
-    """Two rows apart by a crack, of which one has a hole: blue, red left and right, red below."""
-    labels = {"R": [RED], "B": [BLUE], ".": []}
-    surface = drawn("RB.R RRRR", labels, [(0, 4, RED), (3, 7, RED), (3, 6, RED)])
-    assert segments_counted(surface, [RED, BLUE, None, RED, RED, RED, RED, RED]) == 4
 
 
 def test_arrays_that_cannot_hold_colors_are_refused_by_their_type() -> None:

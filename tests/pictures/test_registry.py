@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 from commands import run
 from pages import DRAWN, saved, side_file
 
-from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.pictures import registry
 from cellcolor.pictures.registry import PICTURES, make_picture
@@ -77,23 +75,3 @@ def test_every_picture_declares_parts_that_there_are() -> None:
         picture = make_picture(name)
         assert set(picture.needs + picture.takes) <= parts
         assert not set(picture.needs) & set(picture.takes)
-
-
-def test_a_surface_is_decomposed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Graph and decomposition are of one making, also where both are asked for."""
-    from cellcolor.decomposition import cells
-
-    made = []
-    real = cells.Borders
-
-    def borders(surface: LabelledSurface, vertex_cell: Sequence[int]) -> cells.Borders:
-        made.append(surface)
-        return real(surface, vertex_cell)
-
-    monkeypatch.setattr(cells, "Borders", borders)
-    path, solution = saved(DRAWN, tmp_path), tmp_path / "solution.json"
-    assert run("solve", path, "-o", solution) == 0
-    for arguments in ([path, "--view", "graph"], [path, solution]):
-        made.clear()
-        assert run("show", *arguments, "-o", tmp_path / "x.svg") == 0
-        assert len(made) == 1 and isinstance(made[0], LabelledSurface)

@@ -15,8 +15,6 @@ from joint_paths import SLIDE, driven_scara
 from pages import DESKTOP, PHONE, opened, page_data, unpacked
 from stand_in import stand_in
 
-from cellcolor.data.bounds import Bound
-from cellcolor.data.solution import ModelSize
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import Fault
 from cellcolor.files.writing import HTML
@@ -37,7 +35,6 @@ def report(**changes: object) -> MotionReport:
         made.solution,
         made.painted,
         made.trajectory,
-        made.measures,
         made.verdict,
     )
     return replace(whole, **changes)
@@ -104,7 +101,7 @@ def test_a_page_without_a_motion_shows_what_there_is(tmp_path: Path) -> None:
     nothing = {"trajectory": None, "verdict": None, "missing": "The time limit came <first>."}
     stages = (
         ({"solution": None, "painted": None}, 1, 0),
-        ({"painted": None, "measures": ()}, 2, 0),
+        ({"painted": None}, 2, 0),
         ({"paths": made.paths}, 3, sum(len(path.points) for path in made.paths.paths)),
     )
     for there, modes, points in stages:
@@ -233,6 +230,10 @@ def test_the_arm_is_drawn_and_moves(page_file: Path) -> None:
         page.wait_for_timeout(300)
         seen.append(view.screenshot())
         assert len(set(seen)) == 3
+        assert page.locator("#overlay .dot").count() == len(stand_in().trajectory.left_out) > 0
+        page.locator("#legend button", has_text="left out").click()
+        page.wait_for_timeout(300)
+        assert page.locator("#overlay .dot:visible").count() == 0
         assert faults == []
 
 
@@ -334,23 +335,6 @@ def test_frames_keep_corners_of_the_path() -> None:
     assert 777 in frames and len(frames) <= 22
 
 
-def test_the_page_says_what_proves_a_minimum_of_the_search_space() -> None:
-    made = stand_in()
-    proved = replace(
-        made.solution,
-        search_space="paper",
-        strands=1,
-        surface_lower_bound=1,
-        proved_for_surface=False,
-        bounds=(Bound("cover", 1, "surface"), Bound("model", 2, "strands")),
-        model=ModelSize(30, 70),
-    )
-    assert proved.segments == 2
-    (card,) = [c for c in cards_of(report(solution=proved)) if c.title.startswith("Can there be")]
-    by = "by the complete model (30 variables, 70 constraints)"
-    assert card.paragraphs[0].endswith(f"the fewest in the search space paper, {by}.")
-
-
 def test_badges_count_against_the_proof() -> None:
     made = stand_in()
     strokes = made.trajectory.strokes
@@ -365,7 +349,7 @@ def test_badges_count_against_the_proof() -> None:
     ]
     for case, expected in cases:
         assert expected in badges_of(case)
-    faultless = replace(made.verdict, faults=(), fault_counts={})
+    faultless = replace(made.verdict, valid=True, faults=(), fault_counts={})
     assert ("judged valid", True) in badges_of(report(verdict=faultless))
     assert ("judged valid", True) not in badges_of(report())
     assert ("1 move not planned", False) in badges_of(report())

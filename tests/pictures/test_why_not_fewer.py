@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,9 +11,6 @@ from library import PAPER
 from rooms import hub as hub_graph
 
 import cellcolor
-from cellcolor.checker.certificates import BoundVerdict, verify_bound
-from cellcolor.checker.color_regions import ColorRegion, regions_on_surface
-from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.door.drawing import Drawing
 from cellcolor.errors import InputError
@@ -77,21 +73,3 @@ def test_without_a_certificate_there_is_nothing_to_see() -> None:
         cellcolor.show(path, view="why", solution=solution)
     with pytest.raises(InputError, match="only the graph can be shown"):
         cellcolor.show(cellcolor.solve(hub_graph(0, 1, 0, 1)), view="why")
-
-
-def test_bounds_are_verified_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Before the picture is drawn, on the surface; the picture takes what came of it."""
-    path = PAPER / "ring.surface.json"
-    result = cellcolor.solve(path)
-    seen: list[list[frozenset[ColorRegion]]] = []
-
-    def verified(*args: Any, **options: Any) -> BoundVerdict:
-        seen.append(args[2])
-        return verify_bound(*args, **options)
-
-    for module in ("cellcolor.checker.division", "cellcolor.checker.certificates"):
-        monkeypatch.setattr(f"{module}.verify_bound", verified)
-    cellcolor.show(result, view="why")
-    surface = LabelledSurface.read(path)
-    on_surface = regions_on_surface(surface, decomposition_of(surface, None).vertex_cell)
-    assert seen == [on_surface]

@@ -16,32 +16,16 @@ from hypothesis import strategies as st
 from shipped import SCENES, shipped
 
 import cellcolor
-from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER
-from cellcolor.frontend import BuildResult, Scene, build_surface, links
-from cellcolor.frontend.judging_again import judged_asking_less, judged_asking_more
+from cellcolor.frontend import BuildResult, Scene, build_surface
+from cellcolor.frontend.build import build_prepared
+from cellcolor.frontend.judging_again import built_asking_less, built_asking_more
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach import validity
-from cellcolor.frontend.relaxing import (
-    Distance,
-    GroundPlane,
-    JointRange,
-    LinkContact,
-    ObstacleBody,
-    PartBody,
-    Relaxation,
-    Threshold,
-    ToolBody,
-    ToolLength,
-    Torques,
-    relaxations_of,
-    without,
-)
+from cellcolor.frontend.relaxing import TOOL_LENGTH, Relaxation, relaxations_of, without
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages, judged
 from cellcolor.questions import explaining
 from cellcolor.questions.explanation import Explanation, RelaxedMinimum
-from cellcolor.questions.placing import coarse_scene
 from examples import examples
 
 pytestmark = pytest.mark.second
@@ -75,69 +59,73 @@ def with_range(text: str, joint: str, limit: float) -> str:
 
 def changed(scene: Scene, what: Relaxation) -> Scene:
     """The scene as somebody would write it who changes that one thing in the files."""
-    setup = scene.setup
-    match what:
-        case ObstacleBody(number=number):
-            kept = [one for at, one in enumerate(scene.obstacle, 1) if at != number]
-            return scene.varied(obstacle=tuple(kept))
-        case GroundPlane(amount=lower):
-            lowered = None
-            if lower < np.inf:
-                assert scene.ground is not None
-                lowered = {"height_m": scene.ground.height_m - lower}
-            return scene.varied(ground=lowered)
-        case LinkContact(pair=pair):
-            robot = prepare(scene).robot
-            links = [(robot.bodies[i].link, robot.bodies[j].link) for i, j in robot.tested_pairs]
-            may_touch = (*setup.robot.may_touch, *([pair] if pair else links))
-            return scene.with_setup(setup.varied(robot={"may_touch": may_touch}))
-        case Torques():
-            return scene.with_setup(setup.varied(constraints={"force": False}))
-        case Threshold(given=name, amount=percent):
-            kept_share = max(1 - percent / 100, 0) * getattr(setup.thresholds, name)
-            return scene.with_setup(setup.varied(thresholds={name: kept_share}))
-        case JointRange(joint=joint, amount=wider):
-            assert joint == "wrist_1_joint" or wider == np.inf
-            text = urdf_of(scene, "arm_urdf")
-            if wider == np.inf:
-                text = text.replace(f'"{joint}" type="revolute"', f'"{joint}" type="continuous"')
-                assert "continuous" in text
-            else:
-                text = with_range(text, joint, 2.0 + wider)
-            return scene.with_setup(setup.varied(robot={"arm_urdf": text}))
-        case Distance(margin=key):
-            return scene.with_setup(setup.varied(margins={key: 0}))
-        case ToolLength(amount=longer):
-            return scene.with_setup(setup.varied(task={"stand_off_m": longer}))
-        case ToolBody():
-            text = re.sub(
-                r"<collision.*?</collision>", "", urdf_of(scene, "tool_urdf"), flags=re.DOTALL
-            )
-            return scene.with_setup(setup.varied(robot={"tool_urdf": text}))
-    raise AssertionError(what)
+    setup, amount = scene.setup, what.amount
+    table, _, name = what.key.rstrip("]").partition(".")
+    if what.key.startswith("obstacle"):
+        gone = scene.obstacle[int(what.key[9:-1])]
+        return scene.varied(obstacle=tuple(one for one in scene.obstacle if one is not gone))
+    if what.key == "ground":
+        return lower_ground(scene, amount)
+    if what.key.startswith("joint"):
+        joint = what.key.removeprefix("joint[").removesuffix("].limit")
+        assert joint == "wrist_1_joint" or amount == np.inf
+        text = urdf_of(scene, "arm_urdf")
+        if amount == np.inf:
+            text = text.replace(f'"{joint}" type="revolute"', f'"{joint}" type="continuous"')
+            assert "continuous" in text
+        else:
+            text = with_range(text, joint, 2.0 + amount)
+        return scene.with_setup(setup.varied(robot={"arm_urdf": text}))
+    changes: dict[str, dict[str, Any]] = {
+        "margins": {name: 0},
+        "constraints": {name: False},
+        "task": {name: amount},
+    }
+    if what.key == "robot.may_touch":
+        robot = prepare(scene).robot
+        links = [(robot.bodies[i].link, robot.bodies[j].link) for i, j in robot.tested_pairs]
+        if what.parts == ():
+            links = [pair for pair in links if what.name.endswith(" and ".join(pair))]
+        changes["robot"] = {"may_touch": (*setup.robot.may_touch, *links)}
+    elif what.key == "robot.tool_urdf":
+        text = urdf_of(scene, "tool_urdf")
+        bare = re.sub(r"<collision.*?</collision>", "", text, flags=re.DOTALL)
+        changes["robot"] = {"tool_urdf": bare}
+    elif table == "thresholds":
+        kept = max(1 - amount / 100, 0) * getattr(setup.thresholds, name)
+        changes["thresholds"] = {name: kept}
+    return scene.with_setup(setup.varied(**{table: changes[table]}))
+
+
+def lower_ground(scene: Scene, amount: float) -> Scene:
+    if amount == np.inf:
+        return scene.varied(ground=None)
+    assert scene.ground is not None
+    return scene.varied(ground={"height_m": scene.ground.height_m - amount})
 
 
 def from_scratch(
     scene: Scene, what: Sequence[Relaxation], monkeypatch: pytest.MonkeyPatch
 ) -> BuildResult:
+    keys = [one.key for one in what]
     for one in what:
-        if not isinstance(one, PartBody):
+        if one.key != "object":
             scene = changed(scene, one)
     tests = list(validity.STANDARD_TESTS)
-    if PartBody() in what:  # no file says that the part may be hit
+    if "object" in keys:  # no file says that the part may be hit
         tests = [one for one in tests if one.name != "object collision"]
     with monkeypatch.context() as patch:
         patch.setattr(validity, "STANDARD_TESTS", tuple(tests))
         return build_surface(scene)
 
 
-def same_answers(found: Stages, other: Stages) -> bool:
+def same_answers(found: BuildResult, other: BuildResult) -> bool:
     """Whether two builds of one surface have the same colors, cracks and reasons."""
     return (
-        np.array_equal(found.candidates.valid, other.candidates.valid)
-        and np.array_equal(found.links.linked, other.links.linked)
-        and np.array_equal(found.cleaned.coloring.node_color, other.cleaned.coloring.node_color)
-        and found.cleaned.cracks == other.cleaned.cracks
+        np.array_equal(found.verdicts.valid, other.verdicts.valid)
+        and np.array_equal(found.all_colors.linked, other.all_colors.linked)
+        and np.array_equal(found.coloring.node_color, other.coloring.node_color)
+        and found.coloring.cracks == other.coloring.cracks
     )
 
 
@@ -152,17 +140,17 @@ def test_each_row_is_that_of_the_scene_with_the_thing_changed(
         scene = scene.varied(ground=None)
     prepared = prepare(scene)
     clock = StageClock(NEVER, None)
-    before = judged(prepared, clock)
+    before = build_prepared(prepared, clock)
     changing = 0
-    for one in (*relaxations_of(prepared), ToolLength().by(0.03)):
-        if isinstance(one, ToolBody) and (scene.ground is not None or scene.obstacle):
+    for one in (*relaxations_of(prepared), TOOL_LENGTH.by(0.03)):
+        if one.key == "robot.tool_urdf" and (scene.ground is not None or scene.obstacle):
             continue
         if one.reasons is None:
-            found = judged(without(prepared, [one]), clock)
+            found = build_prepared(without(prepared, [one]), clock)
         else:
-            found = judged_asking_less(without(prepared, [one]), before, one.reasons, clock)
-        assert same_answers(found, from_scratch(scene, [one], monkeypatch).stages), one
-        changing += not np.array_equal(found.candidates.valid, before.candidates.valid)
+            found = built_asking_less(without(prepared, [one]), before, one.reasons, clock)
+        assert same_answers(found, from_scratch(scene, [one], monkeypatch)), one
+        changing += not np.array_equal(found.verdicts.valid, before.verdicts.valid)
     assert changing >= 3
 
 
@@ -180,37 +168,15 @@ def test_what_is_known_changes_nothing_of_what_is_found(
     prepared = prepare(scene_of(name))
     clock = StageClock(NEVER, None)
     things = [one for one in relaxations_of(prepared) if one.reasons is not None]
-    things += [JointRange("wrist_1_joint").by(wider), GroundPlane().by(wider)]
-    what = list({type(things[i % len(things)]): things[i % len(things)] for i in chosen}.values())
+    some = [one for one in things if one.key in ("joint[wrist_1_joint].limit", "ground")]
+    things += [one.by(wider) for one in some]
+    what = list({things[i % len(things)].key: things[i % len(things)] for i in chosen}.values())
     reasons = frozenset[str]().union(*(one.reasons or () for one in what))
     relaxed = without(prepared, what)
-    found = judged_asking_less(relaxed, judged(prepared, clock), reasons, clock)
-    anew = judged(relaxed, clock)
+    found = built_asking_less(relaxed, build_prepared(prepared, clock), reasons, clock)
+    anew = build_prepared(relaxed, clock)
     assert same_answers(found, anew)
-    assert np.array_equal(found.candidates.reasons, anew.candidates.reasons)
-
-
-def test_a_broken_link_says_a_test_that_breaks_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is broken with this test alone, and not asked about again where another is relaxed."""
-    bracket = Scene.read(SCENES.parent / "parts" / "bracket.toml")
-    prepared, clock = prepare(coarse_scene(bracket, 100, NEVER)), StageClock(NEVER, None)
-    stages = judged(prepared, clock)
-    reasons = stages.links.reasons
-    broken = stages.continuous.linked & ~stages.links.linked
-    assert np.array_equal(broken, reasons != VALID) and broken.any()
-    names = [stages.candidates.reason_names[code] for code in np.unique(reasons[broken])]
-    for name in names:
-        alone = replace(prepared, judge=prepared.judge.only(frozenset({name})))
-        known = stages.candidates, stages.continuous, stages.tracked
-        left = links.valid_links(alone, *known, None, NEVER)
-        assert not left.linked[reasons == stages.candidates.reason_names.index(name)].any()
-    assert not {"torque", "manipulability"} & set(names)
-    # What is tested again passes now, so nothing may be.
-    monkeypatch.setattr(
-        links, "remains_valid", lambda _surface, edges, *_: np.ones(len(edges), dtype=bool)
-    )
-    found = judged_asking_less(without(prepared, [Torques()]), stages, Torques.reasons, clock)
-    assert same_answers(found, stages)
+    assert np.array_equal(found.reasons, anew.reasons)
 
 
 @examples(5)
@@ -224,11 +190,13 @@ def test_what_is_known_of_a_freer_scene_changes_nothing_of_what_is_found(
     things = [one for one in relaxations_of(prepared) if one.reasons is not None]
     back = data.draw(st.lists(st.sampled_from(things), min_size=1, max_size=3, unique=True))
     gone = [one for one in things if one not in back]
-    some = [one.by(wider) for one in back if one.unit] if data.draw(st.booleans()) else []
+    some = [one.by(wider) for one in back if one.most] if data.draw(st.booleans()) else []
     stricter = without(prepared, [*gone, *some])
     reasons = frozenset[str]().union(*(one.reasons or () for one in back))
-    found = judged_asking_more(stricter, judged(without(prepared, things), clock), reasons, clock)
-    assert same_answers(found, judged(stricter, clock))
+    found = built_asking_more(
+        stricter, build_prepared(without(prepared, things), clock), reasons, clock
+    )
+    assert same_answers(found, build_prepared(stricter, clock))
 
 
 @pytest.mark.parametrize(("segments", "said"), [(1, True), (3, False)])
@@ -308,7 +276,7 @@ def test_an_amount_saves_what_it_says_and_less_of_it_does_not(tilted: Explanatio
     assert 0 < too_little < enough < 1.1 * too_little
     numbers = {}
     for lower in (enough * 1.001, too_little * 0.999):
-        built = cellcolor.build(changed(scene, GroundPlane(amount=lower)))
+        built = cellcolor.build(lower_ground(scene, lower))
         numbers[lower] = cellcolor.solve(built).solution.segments
     assert list(numbers.values()) == [row.segments, tilted.base.segments]
     assert row.segments is not None and row.segments < (tilted.base.segments or 0)
@@ -319,13 +287,13 @@ def test_an_amount_is_asked_from_the_last_that_was_not_enough(
 ) -> None:
     asked: list[tuple[float, int]] = []
 
-    def noting(prepared: PreparedScene, before: Stages, *others: Any) -> Stages:
-        ground = prepared.workplace.ground
-        valid = int(before.candidates.valid.sum())
+    def noting(prepared: PreparedScene, before: BuildResult, *others: Any) -> BuildResult:
+        ground = prepared.ground
+        valid = int(before.verdicts.valid.sum())
         asked.append((-np.inf if ground is None else ground.offset_m, valid))
-        return judged_asking_less(prepared, before, *others)
+        return built_asking_less(prepared, before, *others)
 
-    monkeypatch.setattr(explaining, "judged_asking_less", noting)
+    monkeypatch.setattr(explaining, "built_asking_less", noting)
     cellcolor.explain(shipped("hemisphere_tilted", 120))
     as_it_is, whole = max(asked)[0], asked[0][1]
     lowered = [valid for offset, valid in asked if -np.inf < offset < as_it_is]
@@ -396,12 +364,12 @@ def test_every_row_of_the_shipped_scenes_from_scratch(
     found = cellcolor.explain(scene)
     prepared = prepare(scene)
     things = relaxations_of(prepared)
-    pairs = [part for one in things for part in one.parts(prepared)]
+    pairs = [part for one in things for part in one.parts]
     named = {one.name: one for one in (*things, *pairs)}
     assert {(one.name,) for one in things} <= {row.relaxed for row in found.alone}
     for row in (*found.alone, *found.sets):
         what = [named[name] for name in row.relaxed]
-        if any(isinstance(one, ToolBody) for one in what):
+        if any(one.key == "robot.tool_urdf" for one in what):
             continue  # its tip needs other room from obstacles and the ground
         surface = from_scratch(scene, what, monkeypatch).surface
         solution = cellcolor.solve(surface).solution
@@ -409,20 +377,3 @@ def test_every_row_of_the_shipped_scenes_from_scratch(
         colored = [bool(colors) for colors in surface.vertex_colors]
         areas = surface.vertex_areas
         assert row.surface_share == pytest.approx(areas[colored].sum() / areas.sum()), what
-
-
-def test_masks_of_all_tests_say_what_is_valid_without_one() -> None:
-    scene = scene_of("wok_obstacle")
-    built = build_surface(scene)
-    masks = built.failures
-    solved = ~np.isnan(built.configurations[..., 0])
-    names = [name for name in built.reason_names if name in masks]
-    first = np.full(solved.shape, built.reason_names.index("no solution"))
-    first[solved] = 0
-    for name in reversed(names):
-        first[masks[name]] = built.reason_names.index(name)
-    assert np.array_equal(first, built.reasons)
-    others = np.any([masks[name] for name in names if name != "self collision"], axis=0)
-    freed = build_surface(changed(scene, LinkContact(None)))
-    assert np.array_equal(solved & ~others, freed.reasons == 0)
-    assert (masks["self collision"] & others).any()

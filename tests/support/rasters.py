@@ -47,7 +47,7 @@ def _made(scene: Scene) -> tuple[PreparedScene, BuildResult, Trajectory]:
     built = build_surface(scene)
     prepared = built.prepared
     counts = [(built.node_color == color).sum() for color in range(len(built.surface.colors))]
-    branch = built.stages.cleaned.coloring.branch[int(np.argmax(counts))]
+    branch = built.coloring.branch[int(np.argmax(counts))]
     return prepared, built, raster(prepared, branch)
 
 

@@ -54,8 +54,7 @@ class StandIn:
     def measures(self) -> tuple[PathMeasures, ...]:
         """Made up: one of each path."""
         return tuple(
-            PathMeasures(0.1, path.length, 1.0, 0.99, 1.1, 3, 1.05, 0.2, 0.012, 0.8)
-            for path in self.paths.paths
+            PathMeasures(0.1, path.length, 1.0, 0.99, 1.1, 0.8) for path in self.paths.paths
         )
 
 
@@ -107,7 +106,7 @@ def _path(painted: Painted, normals: Array, segment: int, walk: list[int]) -> To
 
 
 def _driven(prepared: PreparedScene, built: BuildResult, paths: tuple[ToolPath, ...]) -> Trajectory:
-    branch_of = built.stages.cleaned.coloring.branch
+    branch_of = built.coloring.branch
     times, joints, points, normals, contact, segments = [0.0], [], [], [], [], []
 
     def go(seconds: float, number: int, arm: Array, point: Array, normal: Array) -> None:

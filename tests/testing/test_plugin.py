@@ -186,17 +186,6 @@ def test_the_second_run_proves_nothing_again(tmp_path: Path) -> None:
     assert "20 failed" in run(tmp_path, broken)
 
 
-def test_a_cleared_cache_is_proved_anew(tmp_path: Path) -> None:
-    tests = (
-        "def test_mine(cellcolor_oracle, monkeypatch):\n"
-        "    {}\n"
-        "    cellcolor_oracle('row.surface.json').assert_optimal([0] * 18)\n"
-    )
-    assert "1 passed" in run(tmp_path, tests.format("pass"))
-    broken = tests.format("monkeypatch.setattr('cellcolor.door.oracle.prove', None)")
-    assert "1 failed" in run(tmp_path, broken, "--cache-clear")
-
-
 def joined_in_the_row() -> str:
     """Which segments the oracle itself says can be joined."""
     improvement = cellcolor.Oracle(ROW).judge([0, 0, 1, 1, 0, 0] * 3).improvement

@@ -29,7 +29,7 @@ def at(built: BuildResult, vertex: int, joints: Array) -> AtVertices:
 def expected(built: BuildResult, vertex: int, joints: Array) -> tuple[int | None, bool]:
     """The color or None, and whether it is sure: not within rounding of a tolerance."""
     tip, axis = joint_paths.pose(built, joints)
-    surface = built.stages.surface
+    surface = built.prepared.surface
     off = math.dist(tip, surface.vertices[vertex])
     tilt = math.acos(min(1.0, float(axis @ -surface.normals[vertex])))
     apart = {}
@@ -121,8 +121,7 @@ def test_a_tip_that_is_there_in_a_configuration_that_the_scene_does_not_have() -
     vertex, branch = np.argwhere(built.node_color >= 0)[0].tolist()
     joints = built.configurations[vertex, branch]
     configurations = built.configurations.copy()
-    candidates = replace(built.stages.candidates, configurations=configurations)
-    poorer = replace(built, stages=replace(built.stages, candidates=candidates))
+    poorer = replace(built, verdicts=replace(built.verdicts, configurations=configurations))
     configurations[vertex, branch] = np.nan
     said = at(poorer, vertex, joints).why_none(0)
     assert said.startswith("the scene's nearest configuration there, ")
@@ -175,8 +174,7 @@ def test_a_last_joint_that_moves_the_tip_is_compared() -> None:
     turned = own + np.array([0, 0, 0, 0, 0, 0.2])
     tip = built.robot.tip.copy()
     tip[:3, 3] += 0.005 * np.cross(built.robot.axis[-1], tip[:3, 1])
-    place = built.prepared.workplace
-    place = replace(place, arm=replace(place.arm, robot=replace(built.robot, tip=tip)))
-    beside = replace(built, prepared=replace(built.prepared, workplace=place))
+    arm = replace(built.prepared.arm, robot=replace(built.robot, tip=tip))
+    beside = replace(built, prepared=replace(built.prepared, arm=arm))
     for arm, apart in ((built, 0.0), (beside, 0.2)):
         assert at(arm, vertex, turned).apart[0] == pytest.approx(apart, abs=1e-9)

@@ -145,9 +145,9 @@ def test_cracks_that_are_crossed() -> None:
     vertices, faces = prepared.surface.vertices[:, :2], prepared.surface.faces
     (color,) = {
         int(color)
-        for color, branch in enumerate(built.stages.cleaned.coloring.branch)
+        for color, branch in enumerate(built.coloring.branch)
         if (built.node_color[:, branch] == color).all()
-        and prepared.kinematics.branches[branch] == on_the_way(trajectory)
+        and prepared.arm.kinematics.branches[branch] == on_the_way(trajectory)
     }
     random = np.random.default_rng(0)
     expected, cracks = 0, []
@@ -177,7 +177,7 @@ def on_the_way(trajectory: Trajectory) -> str:
     prepared = rasters.cap()[0]
     found = prepared.arm.inverse(trajectory.points[:1], -trajectory.normals[:1])[0]
     off = np.abs(np.remainder(found - trajectory.joints[0] + np.pi, 2 * np.pi) - np.pi)
-    return prepared.kinematics.branches[int(np.nanargmin(off.max(axis=1)))]
+    return prepared.arm.kinematics.branches[int(np.nanargmin(off.max(axis=1)))]
 
 
 def test_the_tip_may_not_pass_through_the_object_on_the_way() -> None:

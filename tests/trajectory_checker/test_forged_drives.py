@@ -108,16 +108,10 @@ def test_the_campaign_says_what_was_accepted(
     assert "| all 2 | 2 | 2 |" in out
     same = {"none": FORGERS["10% of a stroke dropped"], "same": lambda h, _: h.trajectory}
     monkeypatch.setattr(judge, "FORGERS", same)
-    assert judge.main(["forged", "3", "--start", "5"]) == 1
+    assert judge.main(["forged", "4"]) == 1
     out = capsys.readouterr().out
-    assert out.count("not refused: same, draw ") == 2 and "draw 5" in out and "draw 7" in out
+    assert out.count("not refused: same, draw ") == 2 and "draw 1" in out and "draw 3" in out
     assert "| none | 0 | 0 |" in out and "| all 2 | 2 | 0 |" in out
-
-
-def test_a_stroke_that_is_not_there_is_area_that_is_not_covered() -> None:
-    for number in range(2):
-        verdict = judged(dropped_stroke(cap(), number))
-        assert {"uncovered", "lift-offs"} <= set(verdict.fault_counts)
 
 
 def test_the_proved_minimum_is_held_against_the_drive() -> None:

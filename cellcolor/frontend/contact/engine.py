@@ -31,6 +31,7 @@ Pair = Between | tuple[Body, Shape, float]
 _THREADS = min(len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1, 16)
 _OWNER = os.getpid()  # OpenMP's threads do not survive a fork: a child has one
 _PRECISE = True  # without contacts asked for, coal misses flat cylinders up to 0.4 mm inside a mesh
+_TRIED = 100  # configurations, to see whether links touch whatever the arm does
 _PRIMITIVES = {
     "box": coal.Box,
     "sphere": coal.Sphere,
@@ -54,7 +55,7 @@ class Contacts:
         for first, second, _ in pairs:
             for each in (first, second):
                 if id(each) not in number:
-                    number[id(each)] = geometry.addGeometryObject(_placed(each, robot))
+                    number[id(each)] = geometry.addGeometryObject(_placed(each))
             geometry.addCollisionPair(pin.CollisionPair(number[id(first)], number[id(second)]))
         self._pool = pin.GeometryPool(model, geometry, _THREADS)
         for data in self._pool.getGeometryDatas():
@@ -132,6 +133,22 @@ def pairs_with(robot: Robot, things: Iterable[Shape], margin: float = 0.0) -> li
     return [(body, thing, margin) for thing in things for body in moving]
 
 
+def always_touching(robot: Robot, pairs: Sequence[Between]) -> tuple[tuple[str, str], ...]:
+    """Pairs of links whose bodies, among pairs of them, overlap in all of 100 configurations: their
+    shapes are larger than the links are.
+
+    These are drawn from the joint limits, always the same ones; a joint without limits turns by a
+    full circle.
+    """
+    lower = np.where(np.isinf(robot.lower), -np.pi, robot.lower)
+    upper = np.where(np.isinf(robot.upper), np.pi, robot.upper)
+    tried = np.random.default_rng(0).uniform(lower, upper, (_TRIED, robot.joints))
+    of_links: dict[tuple[str, str], list[Between]] = {}
+    for pair in pairs:
+        of_links.setdefault((pair[0].link, pair[1].link), []).append(pair)
+    return tuple(links for links, own in of_links.items() if Contacts(own, robot)(tried).all())
+
+
 def meet(first: Shape, second: Shape) -> bool:
     """Whether two things that stand still touch; a shell does not notice what is all inside it."""
     sides = [(_geometry(it), coal.Transform3s(it.rotation, it.origin)) for it in (first, second)]
@@ -153,20 +170,12 @@ def _chain(robot: Robot) -> pin.Model:
         for number in range(robot.joints)
     ]
     for follower in robot.followers:
-        parent = follower.parent
-        placement = _out_to(robot, parent).actInv(pin.SE3(follower.placement))
-        joints.append((parent, follower.slides, follower.axis, placement))
+        placement = pin.SE3(follower.placement)
+        joints.append((follower.parent, follower.slides, follower.axis, placement))
     for number, (parent, slides, axis, placement) in enumerate(joints):
         kind = pin.JointModelPrismaticUnaligned if slides else pin.JointModelRevoluteUnaligned
         model.addJoint(parent, kind(axis), placement, str(number))
     return model
-
-
-def _out_to(robot: Robot | None, frame: int) -> pin.SE3:
-    """Where Pinocchio has a joint in the frame behind it: a follower is out of the way there."""
-    if robot is None or frame <= robot.joints:
-        return pin.SE3.Identity()
-    return pin.SE3(robot.followers[frame - robot.joints - 1].placement)
 
 
 def _free_frame() -> pin.Model:
@@ -175,9 +184,9 @@ def _free_frame() -> pin.Model:
     return model
 
 
-def _placed(thing: Body | Shape, robot: Robot | None) -> pin.GeometryObject:
+def _placed(thing: Body | Shape) -> pin.GeometryObject:
     shape, joint = (thing.shape, thing.joint) if isinstance(thing, Body) else (thing, 0)
-    at = _out_to(robot, joint).actInv(pin.SE3(shape.rotation, shape.origin))
+    at = pin.SE3(shape.rotation, shape.origin)
     return pin.GeometryObject(str(id(thing)), joint, at, _geometry(shape))
 
 

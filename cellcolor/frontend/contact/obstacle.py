@@ -64,14 +64,17 @@ class MeshObstacle(Obstacle):
 
 
 class Primitive(Obstacle):
-    """A filled shape that is centered on its position."""
+    """A filled shape that is centered on its position; its own keys are its sizes, in m.
+
+    See :class:`~cellcolor.frontend.arm.shape.Shape`.
+    """
 
     kind: Kind
 
     @property
-    @abstractmethod
     def _sizes(self) -> tuple[float, ...]:
-        """Of the shape, see :class:`~cellcolor.frontend.arm.shape.Shape`."""
+        own = [name for name in type(self).model_fields if name not in Primitive.model_fields]
+        return tuple(np.ravel([getattr(self, name) for name in own]).tolist())
 
     @abstractmethod
     def _mesh(self) -> trimesh.Trimesh:
@@ -79,7 +82,9 @@ class Primitive(Obstacle):
 
     def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shell:  # noqa: ARG002
         """The shape with its curved faces as many flat ones."""
-        mesh = self._mesh()
+        mesh, (radius, *length) = self._mesh(), self._sizes
+        if len(length) == 1:  # pictures sort triangles by depth, which goes wrong with long ones
+            mesh = mesh.subdivide_to_size(max(length[0] / 4, radius))
         return np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)
 
     def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shape:  # noqa: ARG002
@@ -93,10 +98,6 @@ class BoxObstacle(Primitive):
     kind: Literal["box"] = "box"
     size_m: tuple[Length, Length, Length]
 
-    @property
-    def _sizes(self) -> tuple[float, ...]:
-        return self.size_m
-
     def _mesh(self) -> trimesh.Trimesh:
         return trimesh.creation.box(self.size_m)
 
@@ -108,14 +109,8 @@ class CylinderObstacle(Primitive):
     radius_m: Length
     height_m: Length
 
-    @property
-    def _sizes(self) -> tuple[float, ...]:
-        return (self.radius_m, self.height_m)
-
     def _mesh(self) -> trimesh.Trimesh:
-        whole = trimesh.creation.cylinder(self.radius_m, self.height_m, sections=20)
-        # Pictures sort triangles by depth, which goes wrong with long ones.
-        return whole.subdivide_to_size(max(self.height_m / 4, self.radius_m))
+        return trimesh.creation.cylinder(self.radius_m, self.height_m, sections=20)
 
 
 class SphereObstacle(Primitive):
@@ -123,10 +118,6 @@ class SphereObstacle(Primitive):
 
     kind: Literal["sphere"] = "sphere"
     radius_m: Length
-
-    @property
-    def _sizes(self) -> tuple[float, ...]:
-        return (self.radius_m,)
 
     def _mesh(self) -> trimesh.Trimesh:
         return trimesh.creation.icosphere(subdivisions=2, radius=self.radius_m)
@@ -139,15 +130,10 @@ class CapsuleObstacle(Primitive):
     radius_m: Length
     axis_m: Length
 
-    @property
-    def _sizes(self) -> tuple[float, ...]:
-        return (self.radius_m, self.axis_m)
-
     def _mesh(self) -> trimesh.Trimesh:
         whole = trimesh.creation.capsule(self.axis_m, self.radius_m, count=[20, 20])
         whole.apply_translation(-whole.bounds.mean(axis=0))
-        # Pictures sort triangles by depth, which goes wrong with long ones.
-        return whole.subdivide_to_size(max(self.axis_m / 4, self.radius_m))
+        return whole
 
 
 class ConeObstacle(Primitive):
@@ -157,15 +143,10 @@ class ConeObstacle(Primitive):
     radius_m: Length
     height_m: Length
 
-    @property
-    def _sizes(self) -> tuple[float, ...]:
-        return (self.radius_m, self.height_m)
-
     def _mesh(self) -> trimesh.Trimesh:
         whole = trimesh.creation.cone(self.radius_m, self.height_m, sections=20)
         whole.apply_translation([0.0, 0.0, -self.height_m / 2])  # trimesh's stands on the origin
-        # Pictures sort triangles by depth, which goes wrong with long ones.
-        return whole.subdivide_to_size(max(self.height_m / 4, self.radius_m))
+        return whole
 
 
 _DRAWN, _VERTICES = 2.0, 441  # side of the square that is drawn, m, in squares of 0.1 m

@@ -58,7 +58,7 @@ def _millimeters(length: float) -> str:
     return f"{math.floor(1e4 * length) / 10:g}"
 
 
-def report_on(stand_in: StandIn) -> StandInReport:
+def measured(stand_in: StandIn) -> StandInReport:
     """Measure one."""
     off, hull = 0.0, stand_in.body.shape
     if stand_in.chosen == "hull":

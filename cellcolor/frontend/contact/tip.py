@@ -7,6 +7,7 @@ only on the tool's pose, whatever the arm does.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -29,7 +30,7 @@ class Tip:
     """
 
     def __init__(
-        self, robot: Robot, radius: float, obstacles: list[Shape], ground: HalfSpace | None
+        self, robot: Robot, radius: float, obstacles: Sequence[Shape], ground: HalfSpace | None
     ) -> None:
         """``radius`` in m, and the ground if there is one."""
         point, axis = robot.tip[:3, 3], robot.tip[:3, 2]
@@ -44,7 +45,7 @@ class Tip:
         # Without a length it is a ball, whichever way its frame is turned.
         along = np.array([0.0, 0.0, -length])
         region = replace(self.body, joint=1, start=np.zeros(3), end=along)
-        below = [] if ground is None else [ground.shape]
+        below: list[Shape] = [] if ground is None else [ground.shape]
         self._with_obstacles, self._with_ground = (
             Contacts([(region, thing, 0.0) for thing in things]) for things in (obstacles, below)
         )

@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, Mask, numbered
 from cellcolor.frontend.parts.surface import Surface, along_edges
-from cellcolor.memory import batches, check_memory
+from cellcolor.memory import batches
 
-_POINT = 4_096  # bytes that a tested point takes at most
 _ROUNDS = 20  # each at least halves a step that is too long; what is left then is a jump
 
 Test = Callable[[Array, Array, NDArray[np.intp]], tuple[Mask, Array]]
@@ -72,17 +71,12 @@ def remains_valid(
         ends: (ends, n, branches, 3) of the bodies at the vertices, m.
         longest: (ends,) how far each may move between two points, m.
         test: see :data:`Test`.
-
-    Raises:
-        TooLarge: the points of one edge would not fit into the machine's memory.
     """
     result = np.ones(len(edges), dtype=bool)
     i, j = edges.T
     at_i, at_j = (end[i, branches] for end in ends), (end[j, branches] for end in ends)
     pieces = np.maximum(pieces, np.ceil(strides(at_i, at_j, longest)).astype(int))
     cut = np.flatnonzero(pieces > 1)
-    most = int(pieces.max(initial=0))
-    check_memory(most * _POINT, f"testing {most:,} points on one mesh edge")
     for batch in batches(pieces[cut] + 1):
         # Parts of edges: row, from where to where, what they are cut into, the bodies there.
         rows = cut[batch]

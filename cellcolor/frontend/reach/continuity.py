@@ -14,17 +14,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
+from cellcolor.configurations.components import components_of
+from cellcolor.configurations.matching import stays_within
 from cellcolor.data.surface import Crack
-from cellcolor.errors import InputError
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.smooth import Measure, Probe, follow_edges
-from cellcolor.frontend.reach.validity import Candidates
-from cellcolor.mesh.triangle_mesh import grouped
-
-_ROUNDING = 1e-9  # rad, m; an angle on its limit is inside
+from cellcolor.frontend.reach.validity import Verdicts
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Coloring:
     """Colors of all nodes.
 
@@ -32,44 +30,21 @@ class Coloring:
         names: of the colors: the branch, with a number where it has several components.
         branch: of each color.
         node_color: (n, branches) the color of each valid configuration, -1 for others.
+        linked: (edges, branches) along which mesh edges each branch leads.
+        cracks: the mesh edges whose ends share a color that is not continuous along the edge.
     """
 
     names: tuple[str, ...]
     branch: tuple[int, ...]
     node_color: Index
-
-
-def stays_in_limits(
-    lower: Array,
-    upper: Array,
-    start: Array,
-    lowest: Array,
-    highest: Array,
-    slides: Mask | None = None,
-) -> Mask:
-    """Whether motions fit into the joint limits (joints,), turned by full circles where need be.
-
-    With limits of -3 and 3 rad there is no way from 2.9 on by 0.48; with limits of -3 and 4 rad
-    there is.
-
-    Args:
-        start: (..., joints) where the motions begin, rad.
-        lowest, highest: (..., joints) how far each joint gets from there, at most and at least 0.
-        slides: (joints,) which joints are prismatic, in m; none without it.
-    """
-    circle = 2 * np.pi
-    turns = np.ceil((lower - start - lowest) / circle - _ROUNDING)
-    fits = start + highest + circle * turns <= upper + _ROUNDING
-    if slides is not None:
-        within = (start + lowest >= lower - _ROUNDING) & (start + highest <= upper + _ROUNDING)
-        fits = np.where(slides, within, fits)
-    return np.asarray(fits.all(axis=-1))
+    linked: Mask
+    cracks: tuple[Crack, ...]
 
 
 def link(
     surface: Surface,
     edges: Index,
-    candidates: Candidates,
+    verdicts: Verdicts,
     measure: Measure,
     limits: tuple[Array, Array] | None,
     probe: Probe,
@@ -87,30 +62,21 @@ def link(
         probe: see :data:`~cellcolor.frontend.reach.smooth.Probe`; called with points in between.
     """
     i, j = edges.T
-    linked: Mask = candidates.valid[i] & candidates.valid[j]
+    linked: Mask = verdicts.valid[i] & verdicts.valid[j]
     rows, branches = np.nonzero(linked)
-    start, end = (candidates.configurations[ends[rows], branches] for ends in (i, j))
-    at_start, at_end = (candidates.determinants[ends[rows], branches] for ends in (i, j))
-    motions = follow_edges(
-        surface,
-        edges[rows],
-        branches,
-        (start, end),
-        (at_start, at_end),
-        measure,
-        probe,
-    )
+    start, end = (verdicts.configurations[side[rows], branches] for side in (i, j))
+    at_start, at_end = (verdicts.determinants[side[rows], branches] for side in (i, j))
+    ends, determinants = (start, end), (at_start, at_end)
+    motions = follow_edges(surface, edges[rows], branches, ends, determinants, measure, probe)
     smooth = motions.smooth
     if limits is not None:
         moved = motions.lowest, motions.highest
-        smooth = smooth & stays_in_limits(*limits, start, *moved, measure.slides)
+        smooth = smooth & stays_within(limits, start, *moved, measure.periods)
     linked[rows, branches] = smooth
     return linked
 
 
-def color_nodes(
-    nodes: Mask, configurations: Array, links: Index, branch_names: tuple[str, ...]
-) -> Coloring:
+def color_nodes(nodes: Mask, edges: Index, linked: Mask, branch_names: tuple[str, ...]) -> Coloring:
     """Connected components of linked nodes.
 
     Numbering is deterministic: colors follow their branches; within a branch the components
@@ -118,59 +84,31 @@ def color_nodes(
 
     Args:
         nodes: (n, branches) which of them there are.
-        configurations: (n, branches, joints) in rad, for errors.
-        links: (l, 2) nodes that a continuous motion joins, numbered vertex * branches + branch.
-
-    Raises:
-        InputError: a color has two configurations on one vertex; names vertex and
-            configurations.
+        edges: (k, 2) all mesh edges.
+        linked: (k, branches), see :func:`link`; False where an end is no node.
     """
-    branches = nodes.shape[1]
-    component = grouped(nodes.size, links)
-    present = np.flatnonzero(nodes)
-    _, first, inverse, count = np.unique(
-        component[present], return_index=True, return_inverse=True, return_counts=True
-    )
-    branch_of = present[first] % branches
-    order = np.lexsort((first, -count, branch_of))
-    node_color = np.full(nodes.size, -1, dtype=np.int64)
-    node_color[present] = np.argsort(order)[inverse]
-    of_branch = branch_of[order]
+    component = regions(nodes, edges, linked)
+    of_branch = np.zeros(component.max(initial=-1) + 1, dtype=np.int64)
+    of_branch[component[nodes]] = np.nonzero(nodes)[1]
+    order = np.argsort(of_branch, kind="stable")
+    node_color = np.full(nodes.shape, -1, dtype=np.int64)
+    node_color[nodes] = np.argsort(order)[component[nodes]]
     names = []
-    for branch, size in enumerate(np.bincount(of_branch, minlength=branches)):
-        name = branch_names[branch]
+    sizes = np.bincount(of_branch, minlength=len(branch_names)).tolist()
+    for name, size in zip(branch_names, sizes, strict=True):
         names += [name] if size == 1 else [f"{name} {k}" for k in range(1, size + 1)]
-    table = node_color.reshape(nodes.shape)
-    _check_injective(table, configurations, names)
-    return Coloring(tuple(names), tuple(of_branch.tolist()), table)
+    branch = tuple(of_branch[order].tolist())
+    return Coloring(tuple(names), branch, node_color, linked, _cracks(edges, linked, node_color))
 
 
-def _check_injective(node_color: Index, configurations: Array, names: list[str]) -> None:
-    ordered = np.sort(node_color, axis=1)
-    twice = (ordered[:, 1:] == ordered[:, :-1]) & (ordered[:, 1:] >= 0)
-    if not twice.any():
-        return
-    vertex = int(np.argmax(twice.any(axis=1)))
-    shared = ordered[vertex, 1:][twice[vertex]][0]
-    joints = configurations[vertex][node_color[vertex] == shared].round(4).tolist()
-    raise InputError(
-        None,
-        f"vertices[{vertex}]",
-        f"color {names[shared]!r} covers it with {len(joints)} configurations: "
-        + " and ".join(map(str, joints)),
-    )
+def regions(nodes: Mask, edges: Index, linked: Mask) -> Index:
+    """The number of each node's component, (n, branches), largest first; -1 for no node."""
+    row, branch = np.nonzero(linked)
+    return components_of(nodes, edges, np.column_stack([row, branch, branch]))
 
 
-def node_links(edges: Index, linked: Mask) -> Index:
-    """The pairs of nodes (l, 2) that :func:`link` found continuous."""
-    rows, branch = np.nonzero(linked)
-    links: Index = edges[rows] * linked.shape[1] + branch[:, None]
-    return links
-
-
-def find_cracks(edges: Index, linked: Mask, coloring: Coloring) -> tuple[Crack, ...]:
-    """The mesh edges whose ends share a color that is not continuous along the edge itself."""
-    start, end = coloring.node_color[edges[:, 0]], coloring.node_color[edges[:, 1]]
+def _cracks(edges: Index, linked: Mask, node_color: Index) -> tuple[Crack, ...]:
+    start, end = node_color[edges[:, 0]], node_color[edges[:, 1]]
     torn = (start == end) & (start >= 0) & ~linked
     return tuple(
         Crack(int(edges[row, 0]), int(edges[row, 1]), tuple(sorted(start[row, torn[row]].tolist())))

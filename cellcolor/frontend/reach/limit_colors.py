@@ -53,10 +53,8 @@ class LimitColors:
 def limit_colors(
     robot: Robot,
     coloring: Coloring,
-    cracks: tuple[Crack, ...],
     configurations: Array,
     edges: Index,
-    linked: Mask,
 ) -> LimitColors:
     """Divide the colors that do not fit into the joint limits as a whole.
 
@@ -64,7 +62,6 @@ def limit_colors(
         coloring: colors modulo full circles.
         configurations: (n, branches, joints) in rad.
         edges: (k, 2) all mesh edges.
-        linked: (k, branches) the links.
     """
     names: list[str] = []
     base: list[int] = []
@@ -75,7 +72,7 @@ def limit_colors(
     number: dict[int, int] = {}  # of each color that stays whole
     for color, (name, branch) in enumerate(zip(coloring.names, coloring.branch, strict=True)):
         mask = coloring.node_color[:, branch] == color
-        links = edges[linked[:, branch] & mask[edges].all(axis=1)]
+        links = edges[coloring.linked[:, branch] & mask[edges].all(axis=1)]
         angles = configurations[:, branch]
         divided = _divided(robot, mask, links, angles)
         if divided is None:
@@ -98,7 +95,7 @@ def limit_colors(
             for edge in map(tuple, inside[part.mask[inside].all(axis=1)].tolist()):
                 if edge not in whole:
                     torn.setdefault(edge, []).append(here)
-    for crack in cracks:
+    for crack in coloring.cracks:
         kept = [number[color] for color in crack.colors if color in number]
         if kept:
             torn.setdefault((crack.i, crack.j), [])[:0] = kept

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
+from cellcolor.configurations.matching import CIRCLE
 from cellcolor.data.wording import looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
@@ -21,6 +22,7 @@ from cellcolor.frontend.arm.inverse import (
 )
 from cellcolor.frontend.arm.kinematics import Conditioning, conditioning, task_determinants
 from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.newton import stacked
 from cellcolor.frontend.arm.robot import Robot, TaskSpace
 from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at
 from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
@@ -42,41 +44,36 @@ class PreparedArm:
         robot: arm and tool.
         kinematics: the arm's inverse kinematics.
         conditioning: the thresholds for this arm.
-        nameless: None, or if the branches are sheets over a surface
-            (:mod:`cellcolor.frontend.reach.sheets`), the arm whose solutions have no names.
+        own: None, or if the branches are sheets over a surface
+            (:mod:`cellcolor.frontend.reach.sheets`), the kinematics whose solutions have no names.
     """
 
     setup: Setup
     robot: Robot
     kinematics: InverseKinematics
     conditioning: Conditioning
-    nameless: PreparedArm | None = None
+    own: InverseKinematics | None = None
 
     @property
     def named(self) -> bool:
         """Whether the arm's family names the solutions: no sheets are needed then."""
-        return self.nameless is None and bool(self.kinematics.branches)
+        return self.own is None and bool(self.kinematics.branches)
 
     @property
     def bare(self) -> PreparedArm:
         """The arm without sheets: with the kinematics of its family."""
-        bare = self if self.nameless is None else replace(self, kinematics=self.nameless.kinematics)
-        return replace(bare, nameless=None)
+        return self if self.own is None else replace(self, kinematics=self.own, own=None)
 
     def inverse(self, points: Array, directions: Array, deadline: Deadline = NEVER) -> Array:
         """All branches (n, branches, joints) in rad, or all solutions if they have no names.
 
         See :class:`~cellcolor.frontend.arm.inverse.InverseKinematics`.
         """
-        parts = []
+        parts = [np.empty((0, 1, self.robot.joints))]
         for rows in chunks(len(points), self.slots):
             deadline.check()
-            parts.append((rows, self.kinematics.solve(points[rows], directions[rows])))
-        most = max([1, *(part.shape[1] for _, part in parts)])
-        found = np.full((len(points), most, self.robot.joints), np.nan)
-        for rows, part in parts:
-            found[rows, : part.shape[1]] = part
-        return found
+            parts.append(self.kinematics.solve(points[rows], directions[rows]))
+        return stacked(parts)
 
     @property
     def slots(self) -> int:
@@ -89,10 +86,9 @@ class PreparedArm:
     def measure(self) -> Measure:
         """How motions along mesh edges are measured."""
         near_singular = self.conditioning.near_singular_determinant
-        policy, own, slides = self.setup.continuity, self.kinematics, self.robot.slides
-        if not slides.any():
-            return Measure(policy, near_singular, own.lever)
-        return Measure(policy, near_singular, own.lever, slides, own.reach)
+        own, slides = self.kinematics, self.robot.slides
+        periods, units = np.where(slides, np.inf, CIRCLE), np.where(slides, own.reach, 1.0)
+        return Measure(self.setup.continuity, near_singular, own.lever, periods, units)
 
     def without_turn(self, points: Array, directions: Array) -> Mask:
         """Where the setup's rule for the tool's turn gives no turn, (n,)."""

@@ -5,8 +5,8 @@ without names". In standard terms, solutions are the points of a covering of the
 lifts of mesh edges by continuation (path tracking), and a sheet is a sheet of the covering, or
 several pieces of one.
 
-1. :class:`Linking` compares all solutions at both ends of a mesh edge. A pair is linked at once if
-   the step between them is small and clearly the nearest. What is left over at both ends is
+1. :class:`Followed` matches all solutions at both ends of a mesh edge, as configurations without a
+   robot are matched (:mod:`cellcolor.configurations.matching`). What is left over at both ends is
    followed along the edge in small steps, from either end, and is linked if both ways agree.
 2. :func:`sheets_of` finds the components of linked solutions. It refuses one that has two solutions
    of a vertex: the arm is cuspidal there.
@@ -15,9 +15,8 @@ several pieces of one.
    other, are in different sheets.
 4. Solutions that are not valid fill free places, so that each has a reason somewhere.
 
-For k edges and s solutions of a vertex there are O(k s^2) comparisons, edges in batches that fit
-into memory, and the steps of what is followed. Packing c components into t sheets looks at each
-solution t times at most; ``MOST_SHEETS`` bounds t afterwards only.
+Packing c components into t sheets looks at each solution t times at most; ``MOST_SHEETS`` bounds t
+afterwards only.
 """
 
 from __future__ import annotations
@@ -30,19 +29,17 @@ from scipy.sparse import coo_array
 from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, Mask
-from cellcolor.data.candidate_table import VALID
+from cellcolor.configurations.components import components_of, twice
+from cellcolor.configurations.matching import CIRCLE, Matching, farthest, stays_within
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.reach.continuity import stays_in_limits
 from cellcolor.frontend.reach.prepared_arm import PreparedArm
-from cellcolor.frontend.reach.smooth import joint_step, shorter_way
-from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
+from cellcolor.frontend.reach.tracking import Solutions, Tracker
 from cellcolor.frontend.reach.validity import Judge
 from cellcolor.memory import chunks
-from cellcolor.mesh.triangle_mesh import grouped
 
 MOST_SHEETS = 60
 """A set of branches has to fit into one integer where slivers are cleaned."""
@@ -56,8 +53,8 @@ def in_sheets(arm: PreparedArm, surface: Surface, judge: Judge, deadline: Deadli
     """
     bare = arm.bare
     found = bare.inverse(surface.vertices, -surface.normals, deadline)
-    verdicts = judge(found.reshape(-1, bare.robot.joints), deadline)
-    nodes = (verdicts.reasons == VALID).reshape(found.shape[:2])
+    verdicts = judge(found, deadline)
+    nodes = verdicts.valid
     turned, own, robot, along = bare.kinematics, bare.kinematics, bare.robot, surface
     if isinstance(turned, TurnedKinematics):  # followed with the tool on the last axis
         robot, own = turned.straight, turned.own
@@ -65,10 +62,11 @@ def in_sheets(arm: PreparedArm, surface: Surface, judge: Judge, deadline: Deadli
         along = Surface(tips, surface.faces, -directions)
     on, measure = bare.setup.constraints, replace(bare.measure, lever=own.lever)
     tracker = Tracker(robot, measure, bare.conditioning if on.conditioning else None)
-    solutions = tracker.described(verdicts.configurations.reshape(found.shape))
+    solutions = tracker.described(verdicts.configurations)
     limits = (bare.robot.lower, bare.robot.upper) if on.collision else None
-    links = Linking(along, nodes, solutions, tracker, limits).all_links(deadline)
-    slot = sheets_of(surface, links, nodes, solutions)
+    matching = Followed.of(along, nodes, solutions, tracker, limits)
+    pairs, _ = matching.along(surface.edges(), deadline)
+    slot = sheets_of(surface, pairs, nodes, solutions)
     vertex, there = np.arange(len(slot))[:, None], slot >= 0
     joints = np.where(there[:, :, None], solutions.joints[vertex, slot], np.nan)
     poses = along.vertices, -along.normals
@@ -76,7 +74,7 @@ def in_sheets(arm: PreparedArm, surface: Surface, judge: Judge, deadline: Deadli
         own, Tracker(robot, measure), poses, joints, nodes[vertex, slot] & there
     )
     kinematics = turned.with_own(sheets) if isinstance(turned, TurnedKinematics) else sheets
-    return replace(bare, kinematics=kinematics, nameless=bare)
+    return replace(bare, kinematics=kinematics, own=bare.kinematics)
 
 
 class SheetKinematics(InverseKinematics):
@@ -146,9 +144,8 @@ class SheetKinematics(InverseKinematics):
                 -np.concatenate([self._directions[at], directions[target]]),
             )
             ends = np.column_stack([np.arange(len(at)), np.arange(len(at)) + len(at)])
-            known = self._tracker.described(self._joints[at, sheets[target]][:, None])
-            begin, whole = known.take(slice(None), 0), np.ones(len(at))
-            found[target] = self._tracker.walk(way, ends, begin, whole)[0]
+            begin = self._tracker.described(self._joints[at, sheets[target]])
+            found[target] = self._tracker.walk(way, ends, begin)[0]
         return found
 
     def taken(self, directions: Array) -> Array:
@@ -163,92 +160,72 @@ _SAME_PLACE = 1e-9  # m
 
 
 @dataclass(frozen=True)
-class Linking:
-    """Finds the pairs of solutions that a continuous motion along a mesh edge joins.
+class Followed(Matching):
+    """Links solutions that a continuous motion along a mesh edge joins.
+
+    Solutions of different signs of the task determinant have a singularity between them: the sign
+    is their name.
 
     Attributes:
         surface: the part.
-        nodes: (n, s) which solutions are valid.
         solutions: (n, s) of all vertices.
         tracker: follows them, and says what is a jump.
-        limits: lower and upper (joints,) of the joints in rad, which the motions have to keep; none
-            without it.
     """
 
     surface: Surface
-    nodes: Mask
     solutions: Solutions
     tracker: Tracker
-    limits: tuple[Array, Array] | None
 
-    def all_links(self, deadline: Deadline) -> Index:
-        """Linked pairs (l, 3) of all mesh edges, these in batches that fit into memory."""
-        edges, found = self.surface.edges(), [np.empty((0, 3), dtype=np.int64)]
-        for part in chunks(len(edges), self.nodes.shape[1]):
-            deadline.check()
-            found.append(self.links(edges[part]) + np.array([part.start, 0, 0]))
-        return np.concatenate(found)
+    @classmethod
+    def of(
+        cls,
+        surface: Surface,
+        nodes: Mask,
+        solutions: Solutions,
+        tracker: Tracker,
+        limits: tuple[Array, Array] | None,
+    ) -> Followed:
+        """The matching of the solutions that are valid, ``nodes`` (n, s), in rad."""
+        signs = np.nan_to_num(np.sign(solutions.determinants)).astype(np.int64)
+        joints, periods = solutions.joints, np.full(solutions.joints.shape[2], CIRCLE)
+        return cls(joints, nodes, signs, periods, limits, surface, solutions, tracker)
 
-    def links(self, edges: Index) -> Index:
-        """Linked pairs (l, 3): rows of edges (k, 2), and the slots of solutions at both ends."""
+    def small(self, edges: Index, step: Array) -> Mask:
+        """Which steps need not be looked into."""
         i, j = edges.T
-        signs = np.sign(self.solutions.determinants)
-        possible = self.nodes[i][:, :, None] & self.nodes[j][:, None]
-        possible &= signs[i][:, :, None] == signs[j][:, None]
-        settled = possible & self._clear(edges)
-        left = possible & ~settled.any(axis=2)[:, :, None] & ~settled.any(axis=1)[:, None]
-        return np.concatenate([self._within_limits(edges, settled), self._followed(edges, left)])
-
-    def _clear(self, edges: Index) -> Mask:
-        """Between which solutions (k, s, s) the step is small and clearly the nearest."""
-        i, j = edges.T
-        joints, apart = self.solutions.joints, self.solutions.apart
         size, measure = np.abs(self.solutions.determinants), self.tracker.measure
-        step = joint_step(joints[i][:, :, None], joints[j][:, None])
         lengths, turns = self.surface.lengths(edges), self.surface.turns(edges)
         start, end = np.zeros(len(edges)), np.ones(len(edges))
         change = measure.changes(lengths, turns, start, end)[:, None, None]
-        smaller = np.fmin(size[i][:, :, None], size[j][:, None])
-        nearest = clearly_nearest(step, apart[i][:, :, None], apart[j][:, None])
-        return nearest & measure.settled(step, change, smaller)
+        return measure.settled(step, change, np.fmin(size[i][:, :, None], size[j][:, None]))
 
-    def _within_limits(self, edges: Index, settled: Mask) -> Index:
-        """The pairs (l, 3) of a table (k, s, s) whose direct motion keeps the limits."""
-        pairs = np.argwhere(settled)
-        row, first, second = pairs.T
-        start = self.solutions.joints[edges[row, 0], first]
-        moved = shorter_way(start, self.solutions.joints[edges[row, 1], second])
-        return pairs[self._keeps(start, np.minimum(moved, 0.0), np.maximum(moved, 0.0))]
-
-    def _followed(self, edges: Index, left: Mask) -> Index:
-        """The pairs (l, 3) among what is left of (k, s, s) on which both ways agree."""
+    def settle(self, edges: Index, left: Mask, step: Array, nearest: Array) -> tuple[Index, Array]:  # noqa: ARG002
+        """The pairs on which both ways agree."""
         there = self._walked(edges, *np.nonzero(left.any(axis=2)))
         back = self._walked(edges[:, ::-1], *np.nonzero(left.any(axis=1)))[:, [0, 2, 1]]
         agreed = set(map(tuple, back.tolist()))
         both = np.array([tuple(pair) in agreed for pair in there.tolist()], dtype=bool)
-        return np.asarray(there[both])
+        return np.asarray(there[both]), np.full(both.sum(), np.inf)
 
     def _walked(self, edges: Index, row: Index, slot: Index) -> Index:
         """Where solutions at first ends of rows of edges lead: row, slot, slot there, (l, 3)."""
         start = self.solutions.take(edges[row, 0], slot)
-        ends, motions = self.tracker.walk(self.surface, edges[row], start, np.ones(len(row)))
-        smooth = motions.smooth & self._keeps(start.joints, motions.lowest, motions.highest)
+        ends, motions = self.tracker.walk(self.surface, edges[row], start)
+        smooth = motions.smooth
+        if self.limits is not None:
+            moved = motions.lowest, motions.highest
+            smooth = smooth & stays_within(self.limits, start.joints, *moved)
         row, slot, ends = row[smooth], slot[smooth], ends[smooth]
-        off = joint_step(self.solutions.joints[edges[row, 1]], ends[:, None])
+        off = farthest(self.joints[edges[row, 1]], ends[:, None])
         arrived = np.argmin(np.where(np.isnan(off), np.inf, off), axis=1)
         return np.column_stack([row, slot, arrived])
-
-    def _keeps(self, start: Array, lowest: Array, highest: Array) -> Mask:
-        if self.limits is None:
-            return np.ones(len(start), dtype=bool)
-        return stays_in_limits(*self.limits, start, lowest, highest)
 
 
 def sheets_of(surface: Surface, links: Index, nodes: Mask, solutions: Solutions) -> Index:
     """Which solution of a vertex each sheet has, (n, sheets), -1 for none; largest sheets first.
 
     Args:
-        links: (l, 3), see :meth:`Linking.links`, of all mesh edges.
+        links: (l, 3), see :meth:`~cellcolor.configurations.matching.Matching.along`.
         nodes: (n, s) which solutions are valid.
         solutions: (n, s) of all vertices.
 
@@ -256,46 +233,37 @@ def sheets_of(surface: Surface, links: Index, nodes: Mask, solutions: Solutions)
         InputError: linked solutions are two of one vertex; names the vertex and both. Or there are
             too many sheets.
     """
-    edges, slots = surface.edges(), nodes.shape[1]
-    row, first, second = links.T
-    # Solutions are numbered vertex * slots + slot.
-    linked = np.column_stack([edges[row, 0] * slots + first, edges[row, 1] * slots + second])
-    component, present = grouped(nodes.size, linked), np.flatnonzero(nodes)
-    _check_injective(surface, present, component[present], slots, solutions.joints)
-    packed = _packed(_by_size(present, component[present]), edges, nodes.shape)
-    slot = _with_the_rest(packed, ~nodes & ~np.isnan(solutions.determinants))
+    component = components_of(nodes, surface.edges(), links)
+    repeated = twice(component)
+    if len(repeated):
+        raise _cuspidal(surface, component, solutions.joints, *repeated[0].tolist())
+    slot = _with_the_rest(
+        _packed(component, surface.edges()), ~nodes & ~np.isnan(solutions.determinants)
+    )
     if slot.shape[1] > MOST_SHEETS:
         message = f"its solutions fall into {slot.shape[1]} sheets, at most {MOST_SHEETS} fit"
         raise InputError(None, "robot.kinematics", message)
     return slot
 
 
-def _by_size(present: Index, component: Index) -> list[Index]:
-    """The members of each component, largest first, of equal ones that with the first member."""
-    order = np.argsort(component, kind="stable")
-    _, first, count = np.unique(component[order], return_index=True, return_counts=True)
-    members = np.split(present[order], first[1:]) if len(first) else []
-    return [members[k] for k in np.lexsort((present[order][first], -count))]
-
-
-def _packed(components: list[Index], edges: Index, shape: tuple[int, ...]) -> Index:
-    """Sheets (n, sheets) of components, each put into the first sheet where it fits.
+def _packed(component: Index, edges: Index) -> Index:
+    """Sheets (n, sheets) of components (n, s), each put into the first sheet where it fits.
 
     No two components next to each other are in one sheet: their borders would be lost.
     """
-    count, slots = shape
+    count = len(component)
     both_ways = np.concatenate([edges, edges[:, ::-1]]).T
     neighbors = coo_array((np.ones(both_ways.shape[1]), both_ways), shape=(count, count)).tocsr()
     sheets: list[Index] = []
     closed: list[Mask] = []  # the vertices of each sheet that are taken, or next to these
-    for members in components:
-        vertices = members // slots
-        number = next((k for k, own in enumerate(closed) if not own[vertices].any()), len(sheets))
-        if number == len(sheets):
+    for number in range(int(component.max(initial=-1)) + 1):
+        vertices, slots = np.nonzero(component == number)
+        at = next((k for k, own in enumerate(closed) if not own[vertices].any()), len(sheets))
+        if at == len(sheets):
             sheets.append(np.full(count, -1, dtype=np.int64))
             closed.append(np.zeros(count, dtype=bool))
-        sheets[number][vertices] = members % slots
-        closed[number][vertices] = closed[number][neighbors[vertices].indices] = True
+        sheets[at][vertices] = slots
+        closed[at][vertices] = closed[at][neighbors[vertices].indices] = True
     return np.column_stack(sheets) if sheets else np.empty((count, 0), dtype=np.int64)
 
 
@@ -311,21 +279,13 @@ def _with_the_rest(slot: Index, rest: Mask) -> Index:
     return filled
 
 
-def _check_injective(
-    surface: Surface, present: Index, component: Index, slots: int, joints: Array
-) -> None:
-    keys = np.column_stack([present // slots, component])
-    _, first, inverse, count = np.unique(
-        keys, axis=0, return_index=True, return_inverse=True, return_counts=True
-    )
-    twice = np.flatnonzero(count > 1)
-    if not len(twice):
-        return
-    key = twice[np.argmin(first[twice])]
-    vertex = int(present[first[key]]) // slots
-    found = joints[vertex, present[inverse.ravel() == key] % slots].round(4).tolist()
+def _cuspidal(
+    surface: Surface, component: Index, joints: Array, vertex: int, number: int
+) -> InputError:
+    """The error of a component that has a vertex twice."""
+    found = joints[vertex, component[vertex] == number].round(4).tolist()
     place = ", ".join(f"{coordinate:.4f}" for coordinate in surface.vertices[vertex])
-    raise InputError(
+    return InputError(
         None,
         f"vertices[{vertex}]",
         f"at ({place}) m one color has {len(found)} configurations, "

@@ -51,7 +51,6 @@ class SliverReport:
 
 def clean(
     edges: Index,
-    linked: Mask,
     coloring: Coloring,
     areas: Array,
     policy: Slivers,
@@ -63,12 +62,11 @@ def clean(
 
     Args:
         edges: (k, 2) mesh edges.
-        linked: (k, branches), see :func:`~cellcolor.frontend.reach.continuity.link`.
         coloring: the colors of all valid nodes.
         areas: (n,) of the vertices, m^2.
         policy: thresholds, as shares of the surface's area.
     """
-    node_color = coloring.node_color
+    node_color, linked = coloring.node_color, coloring.linked
     cell_of = _cells(edges, linked, node_color)
     graph = _CellGraph(edges, linked, node_color, cell_of, areas)
     total = float(areas.sum())

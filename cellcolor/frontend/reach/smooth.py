@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, Mask
+from cellcolor.configurations.matching import CIRCLE, shorter_way
 from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.frontend.setup import Continuity
 from cellcolor.memory import chunks
@@ -35,22 +36,20 @@ class Measure:
         policy: the bounds on steps.
         near_singular: steps with a task determinant below this, m^3, are always looked into.
         lever: the way that counts like a turn of the tool by one rad, m.
-        slides: (joints,) which joints are prismatic; none without it.
-        reach: the way of a prismatic joint that counts like a turn by one rad, m.
+        periods: (joints,) after which a joint comes back, infinite for a prismatic one.
+        units: (joints,) the way of each joint that counts like a turn by one rad, rad or m.
     """
 
     policy: Continuity
     near_singular: float
     lever: float
-    slides: Mask | None = None
-    reach: float = 1.0
+    periods: Array | float = CIRCLE
+    units: Array | float = 1.0
 
     def step(self, first: Array, second: Array) -> Array:
         """The largest movement of a joint between configurations (..., joints), in rad."""
-        if self.slides is None:
-            return joint_step(first, second)
-        way = np.abs(shorter_way(first, second, self.slides))
-        return np.asarray(np.where(self.slides, way / self.reach, way).max(axis=-1))
+        way = np.abs(shorter_way(first, second, self.periods))
+        return np.asarray((way / self.units).max(axis=-1))
 
     def changes(self, lengths: Array, turns: Array, low: Array, high: Array) -> Array:
         """The change of the tool's pose (k,) in m on parts of edges, from where to where (0 to 1).
@@ -126,11 +125,6 @@ class _Steps:
         )
 
 
-def joint_step(first: Array, second: Array) -> Array:
-    """The largest movement of a joint between configurations (..., joints), modulo 2 pi, in rad."""
-    return np.asarray(np.abs(shorter_way(first, second)).max(axis=-1))
-
-
 def follow_edges(
     surface: Surface,
     edges: Index,
@@ -177,7 +171,7 @@ def follow_edges(
         smooth[steps.row[np.isnan(at_middle)]] = False
         found = smooth[steps.row]
         open_ += sort(steps.take(found).halves(middle[found], joints[found], at_middle[found]))
-    return Motions(smooth, *_excursions(len(edges), settled, measure.slides))
+    return Motions(smooth, *_excursions(len(edges), settled, measure.periods))
 
 
 def _turned(turns: Array, way: Array) -> Array:
@@ -185,17 +179,7 @@ def _turned(turns: Array, way: Array) -> Array:
     return np.arctan2(way * np.sin(turns), 1 - way + way * np.cos(turns))
 
 
-def shorter_way(first: Array, second: Array, slides: Mask | None = None) -> Array:
-    """How far each joint moves between configurations (..., joints), modulo 2 pi, in rad.
-
-    Args:
-        slides: (joints,) which joints are prismatic, in m and not modulo anything; none without it.
-    """
-    way = np.remainder(second - first + np.pi, 2 * np.pi) - np.pi
-    return np.asarray(way if slides is None else np.where(slides, second - first, way))
-
-
-def _excursions(count: int, settled: list[_Steps], slides: Mask | None) -> tuple[Array, Array]:
+def _excursions(count: int, settled: list[_Steps], periods: Array | float) -> tuple[Array, Array]:
     """Lowest and highest angles (count, joints) on motions of settled steps, from 0 at the start.
 
     Args:
@@ -204,7 +188,7 @@ def _excursions(count: int, settled: list[_Steps], slides: Mask | None) -> tuple
     whole = settled[0]
     joints = whole.first.shape[1]
     lowest, highest = np.zeros((count, joints)), np.zeros((count, joints))
-    moved = shorter_way(whole.first, whole.last, slides)
+    moved = shorter_way(whole.first, whole.last, periods)
     lowest[whole.row], highest[whole.row] = np.minimum(moved, 0.0), np.maximum(moved, 0.0)
     if not any(map(len, settled[1:])):
         return lowest, highest
@@ -213,7 +197,7 @@ def _excursions(count: int, settled: list[_Steps], slides: Mask | None) -> tuple
         for name in ("row", "low", "first", "last")
     )
     order = np.lexsort((low, row))
-    row, moved = row[order], shorter_way(first[order], last[order], slides)
+    row, moved = row[order], shorter_way(first[order], last[order], periods)
     # Where each motion begins; a running total over all of them, less what was there before.
     start = np.flatnonzero(np.diff(row, prepend=-1))
     total = np.cumsum(moved, axis=0)

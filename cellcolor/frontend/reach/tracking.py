@@ -12,6 +12,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
+from cellcolor.configurations.matching import shorter_way
 from cellcolor.frontend.arm.kinematics import (
     Conditioning,
     forward,
@@ -22,7 +23,7 @@ from cellcolor.frontend.arm.kinematics import (
 from cellcolor.frontend.arm.newton import polished
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.parts.surface import Surface, along_edges
-from cellcolor.frontend.reach.smooth import Measure, Motions, joint_step, shorter_way
+from cellcolor.frontend.reach.smooth import Measure, Motions
 from cellcolor.memory import chunks
 
 
@@ -33,27 +34,16 @@ class Solutions:
     Attributes:
         joints: (..., joints) in rad, NaN where there is none.
         determinants: (...) task determinant with its sign, m^3, NaN where there is none.
-        apart: (...) how far the nearest other solution of the pose with the same sign is, the joint
-            that moves farthest, rad; infinite if there is no other.
         good: (...) whether the thresholds on conditioning are kept.
     """
 
     joints: Array
     determinants: Array
-    apart: Array
     good: Mask
 
     def take(self, *index: Index | slice | int) -> Solutions:
         """Some of them, as numpy indexes."""
         return Solutions(*(getattr(self, each.name)[index] for each in fields(self)))
-
-
-def clearly_nearest(step: Array, first: Array, second: Array) -> Mask:
-    """Whether steps in rad are less than half as long as the ways to other solutions at the ends.
-
-    A step to any other solution is longer then, whichever end it begins at.
-    """
-    return np.asarray(2 * step < np.minimum(first, second))
 
 
 _STEPS = 8  # of Newton's method; more are needed only where the step is too long
@@ -79,43 +69,28 @@ class Tracker:
         self._robot, self.measure, self._limits = robot, measure, limits
 
     def described(self, joints: Array) -> Solutions:
-        """Solutions (n, s, joints) of n poses, with what is needed to tell them apart."""
-        shape = joints.shape[:2]
-        whole = Solutions(
-            joints, np.full(shape, np.nan), np.full(shape, np.inf), np.zeros(shape, dtype=bool)
-        )
-        for rows in chunks(len(joints), joints.shape[1]):
-            self._describe(whole.take(rows))
-        return whole
+        """Solutions (..., joints), and how well conditioned the arm is in them."""
+        flat, task = joints.reshape(-1, joints.shape[-1]), self._robot.task
+        determinants, good = np.full(len(flat), np.nan), np.zeros(len(flat), dtype=bool)
+        for part in chunks(len(flat)):
+            rows = part.start + np.flatnonzero(~np.isnan(flat[part, 0]))
+            poses = forward(self._robot, flat[rows])
+            linear, angular = tip_jacobian(poses)
+            own = signed_task_determinant(linear, angular, poses.tool_axis, task)
+            determinants[rows], good[rows] = own, True
+            if self._limits is not None:
+                good[rows] = (np.abs(own) >= self._limits.min_task_determinant) & (
+                    manipulability(linear, task) >= self._limits.min_manipulability
+                )
+        shape = joints.shape[:-1]
+        return Solutions(joints, determinants.reshape(shape), good.reshape(shape))
 
-    def _describe(self, part: Solutions) -> None:
-        """Fill in all but the joints; the arrays are parts of larger ones."""
-        there = np.nonzero(~np.isnan(part.joints[:, :, 0]))
-        poses = forward(self._robot, part.joints[there])
-        linear, angular = tip_jacobian(poses)
-        task = self._robot.task
-        determinants = signed_task_determinant(linear, angular, poses.tool_axis, task)
-        part.determinants[there], part.good[there] = determinants, True
-        if self._limits is not None:
-            part.good[there] = (np.abs(determinants) >= self._limits.min_task_determinant) & (
-                manipulability(linear, task) >= self._limits.min_manipulability
-            )
-        signs = np.sign(part.determinants)
-        for other in range(part.joints.shape[1]):
-            step = joint_step(part.joints, part.joints[:, other : other + 1])
-            step[:, other] = np.inf
-            step[~(signs == signs[:, other : other + 1])] = np.inf  # NaN is equal to nothing
-            np.minimum(part.apart, step, out=part.apart)
-
-    def walk(
-        self, surface: Surface, edges: Index, start: Solutions, until: Array
-    ) -> tuple[Array, Motions]:
-        """Follow solutions from the first ends of edges.
+    def walk(self, surface: Surface, edges: Index, start: Solutions) -> tuple[Array, Motions]:
+        """Follow solutions from the first ends of edges to the second ones.
 
         Args:
             edges: (k, 2) vertex indices.
             start: (k,) at the first ends.
-            until: (k,) how far, from 0 to 1.
 
         Returns:
             Where they end, (k, joints), NaN where a motion is lost since it jumps or passes a point
@@ -124,16 +99,16 @@ class Tracker:
         measure, count = self.measure, len(edges)
         shortest = measure.policy.probe_spacing_m / _SHORTER
         lengths, turns = surface.lengths(edges), surface.turns(edges)
-        at, ahead = np.zeros(count), until.copy()
+        at, ahead = np.zeros(count), np.ones(count)
         now = Solutions(*(getattr(start, each.name).copy() for each in fields(start)))
         moved, lowest, highest = np.zeros((3, *now.joints.shape))
         smooth = np.ones(count, dtype=bool)
-        rows = np.flatnonzero(until > 0)
+        rows = np.arange(count)
         while len(rows):
             here = now.take(rows)
             goal = along_edges(surface, edges[rows], ahead[rows])
             joints = polished(self._robot, here.joints[:, None], *goal, np.inf, _STEPS)
-            there = self.described(joints).take(slice(None), 0)
+            there = self.described(joints[:, 0])
             way = shorter_way(here.joints, there.joints)
             with np.errstate(divide="ignore", invalid="ignore"):
                 ratio = there.determinants / here.determinants
@@ -152,7 +127,7 @@ class Tracker:
             # A step that was sure is doubled for the next one, another one halved.
             length = (ahead[rows] - at[rows]) * np.where(sure, 2.0, 0.5)
             at[gone] = ahead[gone]
-            ahead[rows] = np.minimum(at[rows] + length, until[rows])
-            rows = rows[smooth[rows] & (at[rows] < until[rows])]
+            ahead[rows] = np.minimum(at[rows] + length, 1.0)
+            rows = rows[smooth[rows] & (at[rows] < 1.0)]
         now.joints[~smooth] = np.nan
         return now.joints, Motions(smooth, lowest, highest)

@@ -8,6 +8,7 @@ Cheap tests come first; each looks only at what is left.
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, Literal
@@ -25,7 +26,7 @@ from cellcolor.frontend.arm.kinematics import (
 )
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.shape import Shape
-from cellcolor.frontend.contact.engine import Contacts, pairs_of, pairs_with
+from cellcolor.frontend.contact.engine import Contacts, Pair, pairs_of, pairs_with
 from cellcolor.frontend.contact.movement import HalfSpace, body_ends
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.reach.prepared_arm import PreparedArm
@@ -62,31 +63,18 @@ class Workplace:
         return self.arm.setup
 
     @cached_property
-    def with_ground(self) -> Contacts:
-        """Contacts of bodies with the ground, but of links that may touch it."""
-        if self.ground is None:
-            return Contacts([], self.robot)
-        ground, exempt = self.ground.shape, self.setup.robot.may_touch_ground
-        margin = self.setup.margins.to_ground_m
-        free = (body for body in self.robot.bodies if body.link not in exempt)
-        return Contacts([(body, ground, margin) for body in free], self.robot)
-
-    @cached_property
-    def with_itself(self) -> Contacts:
-        """Contacts of links with each other."""
-        return Contacts(pairs_of(self.robot, self.setup.margins.between_links_m), self.robot)
-
-    @cached_property
-    def with_obstacles(self) -> Contacts:
-        """Contacts with all obstacles."""
-        margin = self.setup.margins.to_obstacles_m
-        return Contacts(pairs_with(self.robot, self.obstacles, margin), self.robot)
-
-    @cached_property
-    def with_object(self) -> Contacts:
-        """Contacts with the object."""
-        margin = self.setup.margins.to_object_m
-        return Contacts(pairs_with(self.robot, [self.target], margin), self.robot)
+    def contacts(self) -> dict[str, Contacts]:
+        """What may not touch or come too near, by the name of the test that asks."""
+        robot, margins, exempt = self.robot, self.setup.margins, self.setup.robot.may_touch_ground
+        ground = [] if self.ground is None else [self.ground.shape]
+        free = [body for body in robot.bodies if body.link not in exempt]
+        pairs: dict[str, Sequence[Pair]] = {
+            GroundContact.name: [(body, it, margins.to_ground_m) for it in ground for body in free],
+            SelfCollision.name: pairs_of(robot, margins.between_links_m),
+            ObstacleCollision.name: pairs_with(robot, self.obstacles, margins.to_obstacles_m),
+            ObjectCollision.name: pairs_with(robot, [self.target], margins.to_object_m),
+        }
+        return {name: Contacts(own, robot) for name, own in pairs.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -258,52 +246,42 @@ class TaskDeterminant(StandardTest):
         return np.asarray(postures.determinant < least)
 
 
-class GroundContact(StandardTest):
+class _Contact(StandardTest):
+    """Contacts of the arm and the tool with something; links next to each other may touch."""
+
+    constraint = "collision"
+
+    def failed(self, postures: Postures) -> Mask:
+        """Those in which something is hit."""
+        return postures.workplace.contacts[self.name](postures.configurations)
+
+
+class GroundContact(_Contact):
     """The ground is a half space, below a plane that may be tilted."""
 
     name = "ground"
     remedy = "lift the part, or name the links that may touch the ground in robot.may_touch_ground"
-    constraint = "collision"
-
-    def failed(self, postures: Postures) -> Mask:
-        """Those in which a link is in the ground, if there is one."""
-        return postures.workplace.with_ground(postures.configurations)
 
 
-class SelfCollision(StandardTest):
-    """Links next to each other may touch."""
+class SelfCollision(_Contact):
+    """Two links that overlap."""
 
     name = "self collision"
     remedy = "look at the shapes of the links, or name pairs that overlap anyway in robot.may_touch"
-    constraint = "collision"
-
-    def failed(self, postures: Postures) -> Mask:
-        """Those in which two links overlap."""
-        return postures.workplace.with_itself(postures.configurations)
 
 
-class ObstacleCollision(StandardTest):
+class ObstacleCollision(_Contact):
     """All obstacles of the scene, one after the other."""
 
     name = "obstacle collision"
     remedy = "move the part or the obstacles farther apart"
-    constraint = "collision"
-
-    def failed(self, postures: Postures) -> Mask:
-        """Those in which an obstacle is hit."""
-        return postures.workplace.with_obstacles(postures.configurations)
 
 
-class ObjectCollision(StandardTest):
+class ObjectCollision(_Contact):
     """The tool's body ends before the tip, so the tip alone may touch the object."""
 
     name = "object collision"
     remedy = "use a longer or thinner tool, or turn the part"
-    constraint = "collision"
-
-    def failed(self, postures: Postures) -> Mask:
-        """Those in which the object is hit."""
-        return postures.workplace.with_object(postures.configurations)
 
 
 STANDARD_TESTS: tuple[StandardTest, ...] = (

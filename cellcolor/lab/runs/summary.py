@@ -4,18 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from statistics import median
+from statistics import fmean, median
 
 from cellcolor.data.wording import count
 from cellcolor.lab.runs.row import FINISHED, Row, by, compared, disagreements
-from cellcolor.lab.runs.statistics import (
-    common,
-    contestants_of,
-    median_seconds,
-    of_contestants,
-    par2,
-    strongest,
-)
+from cellcolor.solvers.registry import DEFAULT
 
 _OPEN_SHOWN = 40
 
@@ -35,7 +28,33 @@ def summary_of_runs(rows: Sequence[Row]) -> Iterator[str]:
         yield from _by_family(own, "Minima proved, of runs", _solved)
         yield from ("", *_by_family(own, "Seconds, median", _median))
         yield from ("", *_by_family(own, "PAR2, seconds", lambda runs: _number(par2(runs))))
-        yield from ("", *_where_others_win(own), "", *_ends(own), "", *_open(own))
+        yield from ("", *_ends(own), "", *_open(own))
+
+
+def contestants_of(rows: Iterable[Row]) -> list[str]:
+    """Who takes part, the default solver first."""
+    names = {row.contestant: row.solver for row in rows}
+    return sorted(names, key=lambda name: (names[name] != DEFAULT, names[name], len(name)))
+
+
+def median_seconds(rows: Sequence[Row]) -> float:
+    """Median of the seconds until the minimum was proved; infinite if half or more did not."""
+    return median(row.seconds or 0.0 if row.solved else math.inf for row in rows)
+
+
+def par2(rows: Sequence[Row]) -> float:
+    """The mean of the seconds, where a run that did not prove the minimum counts twice its limit.
+
+    The usual score of solver competitions (penalised average runtime).
+    """
+    return fmean(row.seconds or 0.0 if row.solved else 2.0 * row.limit for row in rows)
+
+
+def common(rows: Sequence[Row]) -> list[Row]:
+    """The runs on what every contestant has been tried on: a part of a sweep is no comparison."""
+    names = {row.contestant for row in rows}
+    problems = by(rows, lambda r: (r.sha256, r.search_space, r.limit, r.repetition)).values()
+    return [row for own in problems if {r.contestant for r in own} == names for row in own]
 
 
 def markdown_table(head: Sequence[str], body: Iterable[Sequence[str]]) -> Iterator[str]:
@@ -108,30 +127,13 @@ def _number(seconds: float) -> str:
     return f"{seconds:.3f}" if seconds < 1 else f"{seconds:.1f}"
 
 
-def _where_others_win(rows: Sequence[Row]) -> Iterator[str]:
-    """Families in which another solver proves more minima than the best of ours."""
-    ours = strongest(rows, rivals=False)
-    if ours is None:
-        return
-    won = []
-    for family, own in by(rows, lambda row: row.family).items():
-        runs = by(own, lambda row: row.contestant)
-        proved = {name: sum(row.solved for row in runs[name]) for name in runs}
-        better = [name for name in proved if proved[name] > proved.get(ours, 0)]
-        won += [f"{family}: {name} {proved[name]}, {ours} {proved.get(ours, 0)}" for name in better]
-    if won:
-        yield f"More minima than {ours}:"
-        yield ""
-        yield from (f"- {line}" for line in won)
-    else:
-        yield f"In no family does any solver prove more minima than {ours}."
-
-
 def _ends(rows: Sequence[Row]) -> Iterator[str]:
     """What did not end with an answer, and what the runs took."""
     bad = ("timeout", "memory", "crashed", "refused", "unsupported")
     body = []
-    for name, own in of_contestants(rows):
+    runs = by(rows, lambda row: row.contestant)
+    for name in contestants_of(rows):
+        own = runs[name]
         answered = [row for row in own if row.status in FINISHED]
         over = max((row.seconds - row.limit for row in answered if row.seconds), default=-math.inf)
         body.append(

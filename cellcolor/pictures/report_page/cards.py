@@ -11,8 +11,11 @@ from cellcolor.data.bounds import Bound
 from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count, listed
-from cellcolor.pictures.report_page.answers import answer_card
-from cellcolor.pictures.report_page.content import Card, MotionReport
+from cellcolor.pictures.report_page.content import Answers, Card, MotionReport
+from cellcolor.questions.explanation import Explanation
+from cellcolor.questions.front import Front
+from cellcolor.questions.placements import Placements
+from cellcolor.questions.set_ups import SetUpPlan
 
 _SHOWN = 12  # faults
 
@@ -33,7 +36,7 @@ def cards_of(report: MotionReport) -> tuple[Card, ...]:
         _programs(report),
     )
     answers = () if report.answered is None else report.answered.answers
-    return (*(card for card in cards if card is not None), *map(answer_card, answers))
+    return (*(card for card in cards if card is not None), *map(_answer, answers))
 
 
 def badges_of(report: MotionReport) -> list[tuple[str, bool | None]]:
@@ -150,20 +153,12 @@ def _coverage(report: MotionReport) -> Card | None:
         ("of the area with a color", f"{1e4 * covered.reachable_m2:.0f} cm²"),
         (f"within {1.5 * spacing:g} mm of a pass", _percent(covered.covered_share)),
         (f"within {0.75 * spacing:g} mm of a pass", _percent(covered.closely_covered_share)),
-        ("left out, rightly", _percent(covered.left_out_share)),
+        ("left out, the arm cannot reach it", _percent(covered.left_out_share)),
         ("uncovered without a reason", f"{1e4 * covered.uncovered_m2:.1f} cm²"),
         ("visits, mean and most", f"{covered.mean_visits:.2f}, {covered.most_visits}"),
         ("along earlier passes", f"{covered.repeated_m:.2f} of {covered.length_m:.2f} m"),
         ("length × spacing / area", f"{covered.length_times_spacing_per_area:.2f}"),
     ]
-    if report.measures:
-        sharp = sum(own.sharp_turns * own.length_m for own in report.measures)
-        length = sum(own.length_m for own in report.measures)
-        longest = 1e3 * max(own.longest_step_m for own in report.measures)
-        rows += [
-            ("turns over 60°", f"{_percent(sharp / length if length else 0)} of path points"),
-            ("longest step of a path", f"{longest:.1f} mm"),
-        ]
     return Card("Coverage", (text,), (("", ""), *rows))
 
 
@@ -325,11 +320,38 @@ def _left_out(report: MotionReport) -> Card | None:
     ]
     whole = 1e4 * sum(map(sum, areas.values()))
     text = (
-        f"Parts of segments that the tool does not reach, {whole:.2f} cm² in all; rings with a red "
-        "rim mark the largest."
+        f"Parts of segments that the tool does not reach, {whole:.2f} cm² in all; red rings mark "
+        "the largest."
     )
     head = ("segment", "cause", "parts", "area", "largest at [m]")
     return Card("Left out", (text,), (head, *rows))
+
+
+_ANSWERS: dict[type[Answers], str] = {
+    Front: "Lift-offs against area",
+    Explanation: "What costs a lift-off",
+    Placements: "Where the part could stand",
+    SetUpPlan: "Several set-ups",
+}
+
+
+def _answer(answer: Answers) -> Card:
+    """What the command prints; of a front a table, whose rows show what they cover."""
+    title = _ANSWERS[type(answer)]
+    if not isinstance(answer, Front):
+        return Card(title, tuple(str(answer).splitlines()))
+    texts = [
+        "The most that each number of lift-offs can cover, of the area with a color. A click on a "
+        "row shows it on the part."
+    ]
+    if not answer.complete:
+        texts.append("The time limit came before everything was tried.")
+    rows = [
+        (str(point.lift_offs), f"{100 * point.covered_share:.1f} %", point.proof)
+        for point in answer
+    ]
+    modes = tuple(point.in_short for point in answer)
+    return Card(title, tuple(texts), (("lift-offs", "covered", "proof"), *rows), modes=modes)
 
 
 def _place(place: tuple[float, float, float]) -> str:

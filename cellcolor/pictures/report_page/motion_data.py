@@ -41,6 +41,7 @@ _MOST_FRAMES = 4000
 _MOST_MARKS, _MOST_DOTS = 40, 12  # of faults, and of left-out places
 _STOPS = 20  # at which the part beside the tool is to be seen
 _CONTACT = "#00508F"
+_LEFT_OUT = "left out, the largest"  # what the legend calls the dots
 
 
 def report_data(report: MotionReport) -> dict[str, Any]:
@@ -50,7 +51,7 @@ def report_data(report: MotionReport) -> dict[str, Any]:
     assert mesh is not None
     surface, prepared = TriangleMesh(mesh.points, mesh.faces), report.built.prepared
     layers, lines = surroundings(prepared), []
-    ground = prepared.workplace.ground
+    ground = prepared.ground
     if ground is not None:
         around = np.concatenate([surface.points, *(layer.points for layer in layers)])
         lines.append(grid(ground, around))
@@ -189,7 +190,7 @@ def _marks(
 
     marks = [mark(own.place, f"extra lift-off: {own.reason}") for own in trajectory.extra_lift_offs]
     largest = sorted(trajectory.left_out, key=lambda part: -part.area_m2)[:_MOST_DOTS]
-    marks += [mark(part.place, "", kind="dot") for part in largest]
+    marks += [mark(part.place, "", kind="dot", name=_LEFT_OUT) for part in largest]
     marks += [
         mark(fault.place, fault.kind, kind="mark fault", time=fault.time)
         for fault in faults[:_MOST_MARKS]

@@ -33,8 +33,8 @@ function armPoses(arm, joints) {
   });
   const tip = poses.at(-1).clone().multiply(matrix(arm.tip));
   for (const { parent, placement, axis, slides, leader, multiplier, offset } of arm.followers) {
-    const fixed = matrix(placement), own = moved(axis, slides, multiplier * joints[leader] + offset);
-    poses.push(poses[parent].clone().multiply(fixed).multiply(own).multiply(fixed.clone().invert()));
+    const own = moved(axis, slides, multiplier * joints[leader] + offset);
+    poses.push(poses[parent].clone().multiply(matrix(placement)).multiply(own));
   }
   return [...poses, tip];
 }
@@ -220,12 +220,12 @@ class View {
 
   // Texts and marks lie over the canvas; those with a time lead to it.
   label(texts) {
-    this.labels = texts.map(({ text, at, outward, kind, time, label }) => {
+    this.labels = texts.map(({ text, at, outward, kind, time, label, name }) => {
       const span = document.createElement(time === undefined ? "span" : "button");
       Object.assign(span, { className: kind, textContent: text });
       if (time !== undefined) Object.assign(span.dataset, { time });
       this.overlay.append(span);
-      return { span, label, at: new THREE.Vector3(...at), outward: new THREE.Vector3(...outward) };
+      return { span, label, name, at: new THREE.Vector3(...at), outward: new THREE.Vector3(...outward) };
     });
     this.overlay.replaceChildren(...this.labels.map(({ span }) => span));
   }
@@ -234,12 +234,13 @@ class View {
   legend() {
     const entries = new Map((this.shown?.legend ?? []).map(({ name, rgb, line }) => [name, { rgb, line }]));
     for (const { name, rgb } of this.things) if (!entries.has(name)) entries.set(name, { rgb, line: false });
-    this.find("legend").replaceChildren(...[...entries].map(([name, { rgb, line }]) => {
+    for (const { name } of this.labels) if (name) entries.set(name, { ring: true });
+    this.find("legend").replaceChildren(...[...entries].map(([name, { rgb, line, ring }]) => {
       const entry = document.createElement("button"), mark = document.createElement("i");
       Object.assign(entry, { type: "button", title: "hide or show" });
       entry.setAttribute("aria-pressed", "true");
-      mark.style.background = rgb;
-      mark.className = line || PATHS.some((path) => path.name === name) ? "line" : "";
+      mark.style.background = rgb ?? "";
+      mark.className = ring ? "dot" : line || PATHS.some((path) => path.name === name) ? "line" : "";
       entry.append(mark, name.replaceAll(" %", "\u00a0%"));
       entry.addEventListener("click", () => {
         const hide = entry.getAttribute("aria-pressed") === "true";
@@ -366,9 +367,9 @@ class View {
     camera.far = far + 3 * this.size;
     camera.updateProjectionMatrix();
     this.renderer.render(this.scene, camera);
-    for (const { span, at, outward, label } of this.labels) {
-      const seen = at.clone().project(camera), name = this.shown?.classes[label]?.name;
-      span.hidden = camera.position.clone().sub(at).dot(outward) <= 0 || this.hidden.has(name);
+    for (const { span, at, outward, label, name } of this.labels) {
+      const seen = at.clone().project(camera), entry = name ?? this.shown?.classes[label]?.name;
+      span.hidden = camera.position.clone().sub(at).dot(outward) <= 0 || this.hidden.has(entry);
       span.style.left = `${50 + 50 * seen.x}%`;
       span.style.top = `${50 - 50 * seen.y}%`;
     }

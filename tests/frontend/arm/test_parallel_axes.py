@@ -19,6 +19,7 @@ from vertex_minima import vertex_minimum
 
 import cellcolor
 from cellcolor.arrays import Array
+from cellcolor.configurations.matching import stays_within
 from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, Scene, Setup, build_surface
@@ -44,7 +45,6 @@ from cellcolor.frontend.arm.robot import (
 from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.reach.continuity import stays_in_limits
 from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.validity import turned_into_limits
 from cellcolor.frontend.setup import RobotFiles, Turn
@@ -192,8 +192,8 @@ def test_only_turning_joints_are_modulo_full_circles() -> None:
 
     def fits(low: float, high: float, start: float = 0.1) -> bool:
         at, one = np.array([0.0, 0.0, start, 0.0]), np.array([0.0, 0.0, 1.0, 0.0])
-        limits = robot.lower, robot.upper
-        return bool(stays_in_limits(*limits, at, low * one, high * one, robot.slides))
+        limits, periods = (robot.lower, robot.upper), np.where(robot.slides, np.inf, 2 * np.pi)
+        return bool(stays_within(limits, at, low * one, high * one, periods))
 
     assert fits(-0.1, 0.1) and not fits(-0.11, 0.0) and not fits(0.0, 0.11)
     assert not fits(0.0, 0.0, start=0.1 + 2 * np.pi)
@@ -316,7 +316,7 @@ def test_the_tool_comes_from_outside_whatever_the_normal(built: BuildResult) -> 
     for degrees, there in ((0, True), (60, True), (89, True), (91, False), (180, False)):
         tilt = np.radians(degrees)
         direction = np.array([[np.sin(tilt), 0, -np.cos(tilt)]])
-        assert np.isnan(prepared.kinematics.solve(point, direction)).all() != there
+        assert np.isnan(prepared.arm.kinematics.solve(point, direction)).all() != there
         # At 90 degrees the rule's vector is along the normal, and says all the same what it says.
         assert not prepared.arm.without_turn(point, direction).any()
 

@@ -14,7 +14,6 @@ from scipy.spatial.transform import Rotation
 from world import PAIRS, World
 
 from cellcolor.arrays import Array, Mask
-from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
@@ -183,10 +182,3 @@ def test_only_the_tip_touches(robot: Robot) -> None:
     for height, expected in ((0.009, False), (0.011, True)):
         vertices = plate.vertices - [0, 0, 5.0] + poses.tip[0] + [0, 0, height]
         assert hits(robot, mesh(plate, vertices), tool_down(-0.3))[0] == expected
-
-
-def test_object_in_the_base_is_refused(scene: Callable[..., Scene]) -> None:
-    wok = scene(position_m=(0.0, 0.0, -0.12), target_vertices=200)
-    with pytest.raises(InputError, match="'base_link'") as caught:
-        build_surface(wok)
-    assert (caught.value.file, caught.value.field) == (None, "placement")

@@ -19,6 +19,7 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.obstacle import (
     OBSTACLES,
     BoxGridObstacle,
+    BoxObstacle,
     CapsuleObstacle,
     ConeObstacle,
     HalfSpaceObstacle,
@@ -56,6 +57,8 @@ def shapes(obstacle: Obstacle) -> list[tuple[coal.ShapeBase, Array]]:
         return [(coal.Cone(obstacle.radius_m, obstacle.height_m), origin)]
     if isinstance(obstacle, CapsuleObstacle):
         return [(coal.Capsule(obstacle.radius_m, obstacle.axis_m), origin)]
+    if isinstance(obstacle, BoxObstacle):
+        return [(coal.Box(*obstacle.size_m), origin)]
     if isinstance(obstacle, HalfSpaceObstacle):
         return [(coal.Halfspace(np.array([0.0, 0.0, 1.0]), 0.0), origin)]
     return [(coal.Box(CELL, CELL, CELL), (np.array(cell) + 0.5) * CELL) for cell in CELLS]
@@ -82,7 +85,9 @@ def distance(obstacle: Obstacle, other: coal.ShapeBase, pose: coal.Transform3s) 
 @st.composite
 def obstacles(draw: st.DrawFn) -> Obstacle:
     where = {"position_m": draw(places), "rpy_rad": draw(turns)}
-    kind = draw(st.sampled_from(["cone", "capsule", "half-space", "box-grid"]))
+    kind = draw(st.sampled_from(["box", "cone", "capsule", "half-space", "box-grid"]))
+    if kind == "box":
+        return BoxObstacle(size_m=(draw(lengths), draw(lengths), draw(lengths)), **where)
     if kind == "cone":
         return ConeObstacle(radius_m=draw(lengths), height_m=draw(lengths), **where)
     if kind == "capsule":
@@ -127,6 +132,8 @@ def test_the_picture_is_the_outside_of_what_is_met(map_folder: Path, obstacle: O
         round_ends = 4 / 3 * np.pi * obstacle.radius_m**3
         whole = np.pi * obstacle.radius_m**2 * obstacle.axis_m + round_ends
         assert 0.9 < volume / whole < 1
+    elif isinstance(obstacle, BoxObstacle):
+        assert volume == pytest.approx(np.prod(obstacle.size_m))
     elif isinstance(obstacle, BoxGridObstacle):
         assert volume == pytest.approx(len(CELLS) * CELL**3)
     else:

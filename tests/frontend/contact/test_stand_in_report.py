@@ -10,7 +10,7 @@ import trimesh
 
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.body import mesh_body
-from cellcolor.frontend.contact.stand_in_report import StandInReport, report_on
+from cellcolor.frontend.contact.stand_in_report import StandInReport, measured
 from cellcolor.frontend.setup import MeshCollision
 
 pytestmark = pytest.mark.second
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.second
 
 def reported(mesh: trimesh.Trimesh, chosen: MeshCollision) -> StandInReport:
     vertices, faces = np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)
-    return report_on(mesh_body("link", 1, Path("folder/link.stl"), vertices, faces, chosen))
+    return measured(mesh_body("link", 1, Path("folder/link.stl"), vertices, faces, chosen))
 
 
 @pytest.mark.parametrize(("apart", "warned"), [(0.039, False), (0.042, True)])

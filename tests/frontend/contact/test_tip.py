@@ -1,16 +1,12 @@
-"""The region at the tool's tip against distances computed independently, on scenes and alone."""
+"""The region at the tool's tip, on scenes and alone; test_obstacle_kinds.py has other code."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-import coal
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from reasons import Reason
 from shipped import ROBOTS
 
@@ -19,7 +15,7 @@ from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.obstacle import BoxObstacle, MeshObstacle, SphereObstacle
 from cellcolor.frontend.contact.tip import Tip
-from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
+from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import RectangleObject, disc_mesh
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.scene import Scene
@@ -103,46 +99,6 @@ def test_a_mesh_blocks_like_a_box(tmp_path: Path) -> None:
     assert (as_mesh.reasons == as_box.reasons).all()
 
 
-coordinates = st.floats(-0.05, 0.05)
-angles = st.floats(-3.1, 3.1)
-
-
-@given(
-    st.tuples(coordinates, coordinates, coordinates),
-    st.tuples(angles, angles, angles),
-    st.tuples(*[st.floats(0.002, 0.06)] * 3),
-    st.floats(0.001, 0.02),
-    st.integers(0, 2**32 - 1),
-)
-def test_against_distances_by_other_code(
-    robot: Robot,
-    position: tuple[float, float, float],
-    rpy: tuple[float, float, float],
-    size: tuple[float, float, float],
-    radius: float,
-    seed: int,
-) -> None:
-    obstacle = BoxObstacle(kind="box", size_m=size, position_m=position, rpy_rad=rpy)
-    tip = Tip(robot, radius, [obstacle.solid()], None)
-    random = np.random.default_rng(seed)
-    points, directions = random.uniform(-0.05, 0.05, (20, 3)), random.normal(size=(20, 3))
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    box, at = coal.Box(*size), coal.Transform3s(rotation_from_rpy(*rpy), np.array(position))
-    region = coal.Capsule(radius, SHAFT)
-    for point, along, blocked in zip(
-        points, directions, tip.blocked(points, directions), strict=True
-    ):
-        x = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
-        x /= np.linalg.norm(x)
-        pose = coal.Transform3s(
-            np.column_stack([x, np.cross(along, x), along]), point - SHAFT / 2 * along
-        )
-        distance = coal.distance(
-            box, at, region, pose, coal.DistanceRequest(), coal.DistanceResult()
-        )
-        assert blocked == (distance <= 0) or abs(distance) < 1e-5
-
-
 def test_the_region_reaches_to_the_body_of_the_tool(robot: Robot) -> None:
     """Without a body on the last link it is a ball."""
     above = SphereObstacle(kind="sphere", radius_m=0.001, position_m=(0.0, 0.0, 0.009))
@@ -181,11 +137,3 @@ def test_a_post_between_two_vertices_is_met(robot: Robot) -> None:
     assert not free[needed < RADIUS - 0.00065].any()
     ends_free = ~tip.blocked(vertices, -surface.normals)[edges].any(axis=1)
     assert (ends_free & ~free).any()
-
-
-def test_left_out_with_the_other_contacts(scene: Callable[..., Scene]) -> None:
-    wok = scene(target_vertices=200, height_m=0.2)
-    on = build_surface(wok)
-    assert on.report.candidates["tip blocked"] > 0 and on.report.reachable == 0
-    off = wok.varied(setup={"constraints": {"collision": False}})
-    assert build_surface(off).report.candidates["tip blocked"] == 0

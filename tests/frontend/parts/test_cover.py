@@ -167,7 +167,7 @@ def test_the_rest_is_not_to_be_hit() -> None:
     rows = [of_whole[tuple(vertex)] for vertex in part.surface.vertices]
     assert 60 < len(rows) < 140
     # Only the normals on the new border differ, and with them a few verdicts there.
-    same = (part.stages.surface.normals == whole.stages.surface.normals[rows]).all(axis=1)
+    same = (part.prepared.surface.normals == whole.prepared.surface.normals[rows]).all(axis=1)
     assert same.mean() > 0.8
     assert (part.reasons[same] == whole.reasons[rows][same]).all()
     assert (part.reasons == part.reason_names.index("object collision")).any()

@@ -14,8 +14,8 @@ from reasons import Reason
 from shipped import shipped
 
 from cellcolor.arrays import Array
+from cellcolor.configurations.matching import farthest, stays_within
 from cellcolor.data.surface import Crack
-from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.parts.shapes import disc_mesh
@@ -23,13 +23,10 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import (
     Coloring,
     color_nodes,
-    find_cracks,
     link,
-    node_links,
-    stays_in_limits,
 )
-from cellcolor.frontend.reach.smooth import Measure, joint_step
-from cellcolor.frontend.reach.validity import Candidates
+from cellcolor.frontend.reach.smooth import Measure
+from cellcolor.frontend.reach.validity import Verdicts
 from cellcolor.frontend.setup import Continuity
 
 pytestmark = pytest.mark.second
@@ -51,13 +48,13 @@ angles = st.lists(st.floats(-20, 20), min_size=6, max_size=6)
 
 
 @given(angles, angles, st.lists(st.integers(-2, 2), min_size=6, max_size=6))
-def test_joint_step_is_modulo_full_circles(
+def test_a_step_is_modulo_full_circles(
     first: list[float], second: list[float], circles: list[int]
 ) -> None:
     a, b = np.array(first), np.array(second)
-    step = joint_step(a, b)
+    step = farthest(a, b)
     assert 0 <= step <= np.pi + 1e-9
-    assert joint_step(a, b + 2 * np.pi * np.array(circles)) == pytest.approx(step, abs=1e-9)
+    assert farthest(a, b + 2 * np.pi * np.array(circles)) == pytest.approx(step, abs=1e-9)
     # On the unit circle the chord tells the same angle.
     chord = np.abs(np.exp(1j * a) - np.exp(1j * b)).max()
     assert 2 * np.sin(step / 2) == pytest.approx(chord, abs=1e-6)
@@ -74,12 +71,13 @@ class Plane:
         self.branches, self.determinant = branches, determinant
         every = np.arange(len(branches))
         configurations = np.stack([self.joints(vertices, np.full(7, b)) for b in every], axis=1)
-        self.candidates = Candidates(
+        self.candidates = Verdicts(
             configurations,
             np.where(np.isnan(configurations[:, :, 0]), Reason.NO_SOLUTION, Reason.VALID).astype(
                 np.uint8
             ),
             np.full((7, len(branches)), determinant),
+            np.empty((0, 7, len(branches), 3)),
             ("valid", "no solution"),
         )
         self.asked = 0
@@ -93,8 +91,8 @@ class Plane:
         q = self.joints(points, branch)
         return q, np.where(np.isnan(q[:, 0]), np.nan, self.determinant)
 
-    def colored(self, links: Array, names: tuple[str, ...]) -> Coloring:
-        return color_nodes(self.candidates.valid, self.candidates.configurations, links, names)
+    def colored(self, *names: str) -> Coloring:
+        return color_nodes(self.candidates.valid, self.edges, self.linked(), names)
 
     def linked(self, policy: Continuity = POLICY) -> Array:
         return link(self.surface, self.edges, self.candidates, measure(policy), None, self.probe)
@@ -107,7 +105,7 @@ def test_slow_motion_is_linked_without_probing() -> None:
 
 def test_fast_but_smooth_motion_is_linked_after_probing() -> None:
     plane = Plane(lambda p: 1.9 * p[0])
-    assert joint_step(*plane.candidates.configurations[[1, 0], 0]) > 1.1  # more than the bound
+    assert farthest(*plane.candidates.configurations[[1, 0], 0]) > 1.1  # more than the bound
     assert plane.linked().all() and plane.asked > 0
 
 
@@ -166,12 +164,11 @@ def spiral(p: Array) -> float:
 
 def test_holonomy_makes_a_crack_and_no_second_color() -> None:
     plane = Plane(spiral)
-    linked = plane.linked()
-    coloring = plane.colored(node_links(plane.edges, linked), ("turning",))
+    coloring = plane.colored("turning")
     assert coloring.names == ("turning",)
     assert coloring.node_color[:, 0].tolist() == [-1, 0, 0, 0, 0, 0, 0]
     # arctan2 jumps between the vertices at 180 and at 240 degrees.
-    assert find_cracks(plane.edges, linked, coloring) == (Crack(4, 5, (0,)),)
+    assert coloring.cracks == (Crack(4, 5, (0,)),)
 
 
 def test_names_and_numbers() -> None:
@@ -181,24 +178,13 @@ def test_names_and_numbers() -> None:
         lambda _: np.nan,
         lambda p: 0.0 if abs(p[1]) < 0.1 else np.nan,
     )
-    links = node_links(plane.edges, plane.linked())
-    coloring = plane.colored(links, ("a", "b", "c"))
+    coloring = plane.colored("a", "b", "c")
     left = np.flatnonzero(plane.surface.vertices[:, 0] < -0.3)
     assert coloring.names == ("a 1", "a 2", "a 3", "c")
     assert coloring.branch == (0, 0, 0, 2)
     assert (coloring.node_color[left, 0] == 0).all()
     assert coloring.node_color[2, 0] == 1 and coloring.node_color[6, 0] == 2
     assert (coloring.node_color[:, 1] == -1).all()
-
-
-def test_two_configurations_of_one_color_are_reported() -> None:
-    plane = Plane(lambda p: 0.1 * p[0], lambda p: 0.1 * p[0] + 0.05)
-    links = node_links(plane.edges, plane.linked())
-    # What joint distance alone would do: the branches grow together at vertex 3.
-    merged = np.vstack([links, [[3 * 2, 3 * 2 + 1]]])
-    with pytest.raises(InputError, match=r"2 configurations: \[.*\] and \[") as caught:
-        plane.colored(merged, ("a", "b"))
-    assert caught.value.field == "vertices[0]"
 
 
 @pytest.fixture(scope="module")
@@ -230,7 +216,7 @@ def test_what_is_linked_can_be_followed(
         and shared == result.node_color[j, branch]
         and (i, j, shared) not in cracked
     ]
-    steps = [joint_step(q[i, b], q[j, b]) for i, j, b in joined]
+    steps = [farthest(q[i, b], q[j, b]) for i, j, b in joined]
     # The fastest ones, and some from everywhere.
     fastest = np.argsort(steps)[-12:].tolist()
     others = np.random.default_rng(2).choice(len(joined), 12, replace=False).tolist()
@@ -239,7 +225,7 @@ def test_what_is_linked_can_be_followed(
         ends = [i, j]
         path = follower.along(q[i, branch], surface.vertices[ends], surface.vertices[ends] - center)
         assert path is not None
-        assert joint_step(path[-1], q[j, branch]) < 1e-6
+        assert farthest(path[-1], q[j, branch]) < 1e-6
 
 
 def test_cracks_are_on_shared_colors_and_colors_are_injective(
@@ -278,4 +264,4 @@ def test_way_between_limits(
     low, high, still = np.full(6, lower), np.full(6, upper), (lower + upper) / 2
     a, b = np.full(6, still), np.full(6, still)
     a[3], b[3] = first, second
-    assert stays_in_limits(low, high, a, *shorter_way(a, b)) == fits
+    assert stays_within((low, high), a, *shorter_way(a, b)) == fits

@@ -32,9 +32,9 @@ def divided(angles: Array, edges: Index, lower: float, upper: float) -> LimitCol
         joint_names=("joint",),
     )
     remainder = np.remainder(angles + pi, CIRCLE) - pi
-    coloring = Coloring(("branch",), (0,), np.zeros((len(angles), 1), dtype=np.int64))
     linked = np.ones((len(edges), 1), dtype=bool)
-    return limit_colors(robot, coloring, (), remainder[:, None, None], edges, linked)
+    coloring = Coloring(("branch",), (0,), np.zeros((len(angles), 1), dtype=np.int64), linked, ())
+    return limit_colors(robot, coloring, remainder[:, None, None], edges)
 
 
 def row(count: int) -> Index:

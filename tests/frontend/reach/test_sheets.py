@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import tracemalloc
 from dataclasses import replace
 from itertools import pairwise
-from types import SimpleNamespace
-from typing import Any, cast
+from pathlib import Path
+from typing import Any
 
 import dh_arms
 import numpy as np
 import pytest
 from arm_plates import cuspidal_scene, plate
 from continuation import Follower
-from hypothesis import given
-from hypothesis import strategies as st
 from independent import wrapped
+from library import INSTANCES
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import shortest_path
 from shipped import ROBOTS, shipped
@@ -24,25 +22,23 @@ import cellcolor
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
-from cellcolor.frontend import Scene, build_surface
+from cellcolor.frontend import BuildResult, Scene, build_surface
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, signed_task_determinant, tip_jacobian
+from cellcolor.frontend.build import build_prepared
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, named, prepare
-from cellcolor.frontend.reach.sheets import Linking, sheets_of
-from cellcolor.frontend.reach.smooth import Measure
-from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
-from cellcolor.frontend.setup import Continuity
+from cellcolor.frontend.reach.sheets import Followed, sheets_of
+from cellcolor.frontend.reach.tracking import Solutions, Tracker
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages, judged
-from cellcolor.memory import CHUNK
 
 pytestmark = pytest.mark.second
 
 
 class Unnamed(InverseKinematics):
-    """A family of arms without its names, its solutions in another order at every point."""
+    """A family of arms without its names: at every point its solutions are in another order, and
+    their joints turned by full circles."""
 
     branches = ()
 
@@ -54,82 +50,84 @@ class Unnamed(InverseKinematics):
         assert branches is None
         found = self._inner.solve(points, directions)
         salt = np.remainder(np.sin(1e5 * points.sum(axis=1))[:, None] * np.arange(1, 9), 1)
-        return np.take_along_axis(found, np.argsort(salt, axis=1)[:, :, None], axis=1)
+        turned = found + 2 * np.pi * np.rint(3 * salt - 1.5)[:, :, None]
+        return np.take_along_axis(turned, np.argsort(salt, axis=1)[:, :, None], axis=1)
 
 
 def without_names(scene: Scene) -> tuple[PreparedScene, PreparedScene]:
     """A scene as it is, and with its arm's solutions told apart by continuity alone."""
     prepared = prepare(scene)
-    arm = replace(prepared.arm, kinematics=Unnamed(prepared.kinematics))
-    unnamed = named(replace(prepared, workplace=replace(prepared.workplace, arm=arm)))
+    arm = replace(prepared.arm, kinematics=Unnamed(prepared.arm.kinematics))
+    unnamed = named(replace(prepared, arm=arm))
     return prepared, unnamed
 
 
-def both(scene: Scene) -> tuple[Stages, Stages]:
+def both(scene: Scene) -> tuple[BuildResult, BuildResult]:
     """What comes out with names and without."""
-    first, second = (judged(each, StageClock(NEVER, None)) for each in without_names(scene))
+    first, second = (build_prepared(each, StageClock(NEVER, None)) for each in without_names(scene))
     return first, second
 
 
-def as_sets(stages: Stages) -> set[frozenset[tuple[int, tuple[float, ...]]]]:
-    """The colors as sets of vertices with configurations, whatever they are called."""
-    colors: dict[int, set[tuple[int, tuple[float, ...]]]] = {}
-    node_color = stages.cleaned.coloring.node_color
-    for vertex, column in np.argwhere(node_color >= 0).tolist():
-        q = stages.candidates.configurations[vertex, column].round(6) + 0.0
-        colors.setdefault(node_color[vertex, column], set()).add((vertex, tuple(q.tolist())))
+def as_sets(built: BuildResult, named: BuildResult) -> set[frozenset[tuple[int, int]]]:
+    """The colors as sets of vertices with the branches that their configurations have by name."""
+    node_color = built.coloring.node_color
+    vertex, column = np.nonzero(node_color >= 0)
+    off = wrapped(named.configurations[vertex] - built.configurations[vertex, column][:, None])
+    far = np.nan_to_num(off.max(axis=2), nan=np.inf)
+    assert far.min(axis=1).max() < 1e-6
+    colors: dict[int, set[tuple[int, int]]] = {}
+    color = node_color[vertex, column].tolist()
+    for each, node in zip(color, zip(vertex, far.argmin(axis=1), strict=True), strict=True):
+        colors.setdefault(each, set()).add((int(node[0]), int(node[1])))
     return set(map(frozenset, colors.values()))
 
 
-@pytest.mark.second
+def check_without_names(scene: Scene) -> None:
+    """The same colors, cracks and minimum as with names; and reasons, but for the order."""
+    own, unnamed = both(scene)
+    assert len(as_sets(own, own)) >= 1
+    assert as_sets(unnamed, own) == as_sets(own, own)
+    assert [(c.i, c.j) for c in unnamed.coloring.cracks] == [
+        (c.i, c.j) for c in own.coloring.cracks
+    ]
+    assert unnamed.all_colors.linked.sum() == own.all_colors.linked.sum()
+    assert (np.sort(own.reasons, axis=1) == np.sort(unnamed.reasons, axis=1)).all()
+    assert unnamed.branches[0] == "sheet-1"
+    minima = [cellcolor.solve(each.surface).solution for each in (own, unnamed)]
+    assert len({(each.segments, each.status) for each in minima}) == 1
+
+
 @pytest.mark.parametrize("name", ["wok", "square", "half_pipe"])
 def test_colors_are_the_same_without_names(name: str) -> None:
-    own, unnamed = both(shipped(name, 200))
-    assert len(as_sets(own)) >= 3
-    assert as_sets(unnamed) == as_sets(own)
-    assert [(c.i, c.j) for c in unnamed.cleaned.cracks] == [(c.i, c.j) for c in own.cleaned.cracks]
-    # Reasons too, but for the order.
-    for first, second in zip(own.candidates.reasons, unnamed.candidates.reasons, strict=True):
-        assert sorted(first.tolist()) == sorted(second.tolist())
-    assert unnamed.branches[0] == "sheet-1"
+    check_without_names(shipped(name, 200))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "name", ["wok", "wok_obstacle", "square", "half_pipe", "hemisphere_flat", "hemisphere_tilted"]
+    "file",
+    [
+        file
+        for folder in ("scenes", "arms", "parts")
+        for file in sorted((INSTANCES / folder).glob("*.toml"))
+        if "refused" not in file.stem
+    ],
+    ids=lambda file: file.stem,
 )
-def test_colors_of_the_six_scenes_are_the_same_without_names(name: str) -> None:
-    own, unnamed = both(shipped(name))
-    assert as_sets(unnamed) == as_sets(own)
-    assert unnamed.links.linked.sum() == own.links.linked.sum()
-
-
-@given(
-    first=st.floats(-3, 3),
-    others=st.lists(st.floats(-3, 3), min_size=1, max_size=5),
-    seed=st.integers(0, 2**32 - 1),
-)
-def test_what_is_clearly_nearest_is_nearest_from_both_ends(
-    first: float, others: list[float], seed: int
-) -> None:
-    here = np.array([first, *others])
-    there = here + np.random.default_rng(seed).normal(0, 0.3, len(here))
-    apart = [np.abs(np.delete(side, 0) - side[0]).min() for side in (here, there)]
-    if clearly_nearest(np.abs(there[0] - here[0]), *apart):
-        assert np.argmin(np.abs(there - here[0])) == np.argmin(np.abs(here - there[0])) == 0
+def test_shipped_scenes_and_parts_are_the_same_without_names(file: Path) -> None:
+    check_without_names(Scene.read(file))
 
 
 def test_without_names_an_arm_with_passing_wrist_axes_has_colors() -> None:
     result = build_surface(plate(dh_arms.urdf("passing"), "eaik", vertices=60))
     assert "none found on this part" in str(result.report)
     assert "not cuspidal" not in str(result.report)
-    follower, linked = Follower(result.robot), result.stages.links
-    row, sheet = np.argwhere(linked.linked).T
+    follower, linked = Follower(result.robot), result.all_colors.linked
+    row, sheet = np.argwhere(linked).T
     assert len(row) > 300 and max(color.vertices for color in result.report.colors) > 40
-    surface = result.stages.surface
+    surface = result.prepared.surface
     # By Newton's method on Pinocchio's Jacobian the links lead to where the sheets say.
     for k in np.random.default_rng(1).choice(len(row), 8, replace=False):
-        ends = linked.edges[row[k]]
+        ends = surface.edges()[row[k]]
         start, goal = result.configurations[ends, sheet[k]]
         path = follower.along(start, surface.vertices[ends], surface.normals[ends])
         assert path is not None and wrapped(path[-1] - goal).max() < 1e-6
@@ -140,13 +138,13 @@ def linked_nodes(prepared: PreparedScene) -> tuple[Array, Array, Array]:
     surface = prepared.surface
     arm = prepared.arm.bare
     found = arm.inverse(surface.vertices, -surface.normals)
-    verdicts = prepared.judge(found.reshape(-1, 6))
-    nodes = (verdicts.reasons == 0).reshape(found.shape[:2])
+    verdicts = prepared.judge(found)
+    nodes = verdicts.valid
     tracker = Tracker(arm.robot, arm.measure, arm.conditioning)
-    solutions = tracker.described(verdicts.configurations.reshape(found.shape))
+    solutions = tracker.described(verdicts.configurations)
     limits = prepared.robot.lower, prepared.robot.upper
-    pairs = Linking(surface, nodes, solutions, tracker, limits).links(surface.edges())
-    return solutions.joints, nodes, pairs
+    matching = Followed.of(surface, nodes, solutions, tracker, limits)
+    return solutions.joints, nodes, matching.along(surface.edges(), NEVER)[0]
 
 
 @pytest.mark.second
@@ -208,7 +206,7 @@ class Disc:
         joints = np.zeros((7, 2, 6))
         joints[:, 1, 0] = 2.0
         ones = np.ones((7, 2))
-        self.solutions = Solutions(joints, ones, 2 * ones, ones.astype(bool))
+        self.solutions = Solutions(joints, ones, ones.astype(bool))
 
     def along(self, first: int, second: int, wanted: set[frozenset[int]]) -> Array:
         rows = [k for k, edge in enumerate(self.edges.tolist()) if frozenset(edge) in wanted]
@@ -233,7 +231,7 @@ def test_a_component_and_what_is_linked_to_nothing() -> None:
     ones, (a, b) = np.ones((3, 2)), (0, 1)
     rows = {tuple(edge): row for row, edge in enumerate(surface.edges().tolist())}
     links = np.array([[rows[0, 1], a, b], [rows[1, 2], b, a]])
-    solutions = Solutions(np.zeros((3, 2, 6)), ones, ones, ones > 0)
+    solutions = Solutions(np.zeros((3, 2, 6)), ones, ones > 0)
     sheets = sheets_of(surface, links, ones > 0, solutions)
     none = -1
     assert sheets.T.tolist() == [[a, b, a], [b, none, none], [none, a, none], [none, none, b]]
@@ -255,53 +253,6 @@ def test_a_solution_linked_to_another_one_of_its_vertex_is_refused() -> None:
     assert caught.value.field == "vertices[1]"
 
 
-class Nowhere:
-    """Follows no motion; where all are settled at once there is none to be followed."""
-
-    def __init__(self, measure: Measure) -> None:
-        self.measure = measure
-
-    def walk(self, *given: Any) -> tuple[Array, Any]:
-        start = given[2]
-        assert not len(start.joints)
-        nothing = np.zeros(0, dtype=bool)
-        return start.joints, SimpleNamespace(
-            smooth=nothing, lowest=start.joints, highest=start.joints
-        )
-
-
-@pytest.mark.parametrize("joints", [2, 6, 7])
-@pytest.mark.parametrize("slots", [2, 8, 24])
-def test_edges_that_are_compared_at_once_take_little(slots: int, joints: int) -> None:
-    """All that numpy holds at one time, beside what was there before."""
-    count = CHUNK // slots
-    flat, faces = disc_mesh(7, 0.0, 0)
-    surface = Surface(np.column_stack([flat, np.zeros(7)]), faces, np.tile([0.0, 0.0, 1.0], (7, 1)))
-    own = surface.edges()
-    edges = own[np.arange(count) % len(own)]
-    random = np.random.default_rng(0)
-    angles = np.tile(random.uniform(-3, 3, (slots, joints)), (7, 1, 1))
-    angles[:, :, 0] = np.linspace(-3, 3, slots)  # no two are near each other
-    ones = np.ones((7, slots))
-    solutions = Solutions(angles, ones, 0.5 * ones, ones.astype(bool))
-    policy = Continuity(
-        base_step_rad=0.1,
-        step_per_length_rad_per_m=1.0,
-        near_singular_determinant=0.0,
-        probe_spacing_m=0.01,
-    )
-    follower = cast(Tracker, Nowhere(Measure(policy, 0.0, 0.0)))
-    tracemalloc.start()
-    try:
-        # Every solution has its like at the other end, so nothing has to be followed.
-        found = Linking(surface, ones > 0, solutions, follower, None).links(edges)
-        peak = tracemalloc.get_traced_memory()[1]
-    finally:
-        tracemalloc.stop()
-    assert len(found) == count * slots
-    assert peak <= 50_000_000
-
-
 @pytest.mark.slow
 def test_an_arm_without_names_is_driven_and_judged_like_the_others() -> None:
     """Painting, motion and judge follow sheets where they follow branches of other arms."""
@@ -319,6 +270,6 @@ def test_sheets_of_whole_poses_have_the_turn_that_the_setup_gives() -> None:
     vertex, sheet = np.nonzero(built.reasons == 0)
     assert len(vertex) > 400
     poses = forward(built.robot, built.configurations[vertex, sheet])
-    assert np.abs(poses.tip - built.stages.surface.vertices[vertex]).max() < 1e-9
+    assert np.abs(poses.tip - built.prepared.surface.vertices[vertex]).max() < 1e-9
     across = poses.rotation[:, -1] @ built.robot.tip[:3, 0]
     assert np.abs(across - [1, 0, 0]).max() < 1e-9

@@ -16,7 +16,7 @@ from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.parts.shapes import grid_mesh, rectangle
-from cellcolor.frontend.reach.continuity import Coloring, color_nodes, node_links
+from cellcolor.frontend.reach.continuity import Coloring, color_nodes
 from cellcolor.frontend.reach.slivers import SliverReport, _cells, clean
 from cellcolor.frontend.setup import Setup, Slivers
 
@@ -27,7 +27,7 @@ def row(*sets: str) -> tuple[Array, Array, Coloring]:
     edges = np.array([[k, k + 1] for k in range(len(sets) - 1)])
     linked = nodes[:-1] & nodes[1:]
     node_color = np.where(nodes, np.arange(3), -1)
-    return edges, linked, Coloring(("a", "b", "c"), (0, 1, 2), node_color)
+    return edges, linked, Coloring(("a", "b", "c"), (0, 1, 2), node_color, linked, ())
 
 
 def cleaned(
@@ -41,7 +41,7 @@ def cleaned(
     policy = Slivers(
         simplify_below_share=simplify * share * 0.99, uncover_below_share=uncover * share * 0.99
     )
-    kept, report = clean(edges, linked, coloring, np.ones(len(sets)), policy)
+    kept, report = clean(edges, coloring, np.ones(len(sets)), policy)
     return ["".join(np.array(list("abc"))[r]) for r in kept], report
 
 
@@ -149,11 +149,11 @@ def test_like_looking_at_all_cells_again(
     edges = surface.edges()
     linked = nodes[edges[:, 0]] & nodes[edges[:, 1]] & (rng.random((len(edges), 4)) >= cracked)
     names = ("a", "b", "c", "d")
-    coloring = color_nodes(nodes, np.zeros((*nodes.shape, 6)), node_links(edges, linked), names)
+    coloring = color_nodes(nodes, edges, linked, names)
     # Whole numbers: their sums are exact, so that equal areas are equal in whatever order.
     areas = rng.integers(1, 4, len(x)).astype(float)
     policy = Slivers(simplify_below_share=below, uncover_below_share=below / 2)
-    kept, report = clean(edges, linked, coloring, areas, policy)
+    kept, report = clean(edges, coloring, areas, policy)
     expected, simplified, given_up = rescanned(edges, linked, coloring, areas, policy)
     assert (kept == expected).all()
     assert (report.simplified_cells, report.simplified_area_m2) == (
@@ -164,10 +164,10 @@ def test_like_looking_at_all_cells_again(
 
 
 def test_out_of_time() -> None:
-    edges, linked, coloring = row("a", "a", "ab", "b", "b")
+    edges, _, coloring = row("a", "a", "ab", "b", "b")
     policy = Slivers(simplify_below_share=0.3)
     with pytest.raises(OutOfTime):
-        clean(edges, linked, coloring, np.ones(5), policy, Deadline.after(0.0))
+        clean(edges, coloring, np.ones(5), policy, Deadline.after(0.0))
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from cellcolor.arrays import Array
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import link
 from cellcolor.frontend.reach.smooth import Measure, Motions, Probe, follow_edges
-from cellcolor.frontend.reach.validity import Candidates
+from cellcolor.frontend.reach.validity import Verdicts
 from cellcolor.frontend.setup import Continuity
 
 POLICY = Continuity(
@@ -151,10 +151,11 @@ def test_limits_are_asked_of_the_motion_and_not_of_the_shorter_way(
 
     configurations = np.zeros((3, 1, 6))
     configurations[:2, 0] = wound(joint(np.array([0.0, 1.0])))
-    candidates = Candidates(
+    candidates = Verdicts(
         configurations,
         np.array([[0], [0], [1]], dtype=np.uint8),
         np.full((3, 1), 0.02),
+        np.empty((0, 3, 1, 3)),
         ("valid", "no solution"),
     )
     limits = np.full(6, -2.4), np.full(6, 2.4)

@@ -18,13 +18,12 @@ from shipped import SCENES, shipped
 from world import PAIRS, World
 
 from cellcolor.arrays import Array
+from cellcolor.configurations.matching import farthest, stays_within
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.contact.obstacle import SphereObstacle
 from cellcolor.frontend.parts.surface import along_edges
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.frontend.reach.continuity import stays_in_limits
-from cellcolor.frontend.reach.smooth import joint_step
 
 pytestmark = pytest.mark.slow
 
@@ -79,7 +78,7 @@ def largest_part(
     turned = (1 - at) * directions[piece] + at * directions[piece + 1]
     turned /= np.linalg.norm(turned, axis=1, keepdims=True)
     joints = prepared.arm.follow(between, turned, np.full(len(at), branch))
-    return float(joint_step(joints[:-1], joints[1:]).max())
+    return float(farthest(joints[:-1], joints[1:]).max())
 
 
 @pytest.mark.parametrize(("vertices", "count"), [(300, 40), (1000, 1000)])
@@ -94,11 +93,11 @@ def test_random_walks(name: str, vertices: int, count: int) -> None:
         if not len(points):
             continue
         # Beside a singularity a motion is fast, but in fifty parts of a piece it is even.
-        step = joint_step(joints[:-1], joints[1:])
+        step = farthest(joints[:-1], joints[1:])
         for piece in {int(np.argmax(step)), *np.flatnonzero(step > FAST).tolist()}:
             assert largest_part(prepared, points, directions, branch, piece) < 0.1 * step[piece]
         way_there = shorter_way(joints[:-1], joints[1:])
-        assert stays_in_limits(robot.lower, robot.upper, joints[:-1], *way_there).all()
+        assert stays_within((robot.lower, robot.upper), joints[:-1], *way_there).all()
         all_points.append(points)
         all_directions.append(directions)
         all_joints.append(joints)
