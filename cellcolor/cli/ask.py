@@ -26,7 +26,7 @@ from cellcolor.cli.options import (
     shared,
 )
 from cellcolor.cli.progress import at_work
-from cellcolor.cli.terminal import complain, drawn_to, print_json, say, say_lines
+from cellcolor.cli.terminal import complain, print_json, say, say_lines
 from cellcolor.data.prices import MOST_PRICE
 
 _POSE = Numbers("a place is six numbers x,y,z,roll,pitch,yaw", 6)
@@ -47,13 +47,11 @@ def _print(file: Path, rows: Iterable[dict[str, Any]], text: object, as_json: bo
 @click.argument("source", metavar="SCENE|SURFACE|INSTANCE", type=INPUT)
 @option("--share", SHARE, "Print only the fewest lift-offs that cover this share, 0 to 1.")
 @shared("left_alone")
-@output_option("FRONT.(png|svg)", "Draw the whole front to a file.")
 @json_option("Print a JSON object for each point.")
 @shared("workers", "seed", "time_limit")
 def tradeoff(
     source: Path,
     share: float | None,
-    output: Path | None,
     as_json: bool,
     **search: Any,
 ) -> Exit:
@@ -63,19 +61,16 @@ def tradeoff(
     """
     from cellcolor.cli.inputs import read_subject
     from cellcolor.cli.tables import nothing_to_cover
-    from cellcolor.door.asking import save_front
     from cellcolor.door.asking import tradeoff as front_of
 
-    with drawn_to(output, [source], as_json) as draw:
-        with at_work(source, "asking", "the time limit came before any division was found") as tell:
-            subject = read_subject(source, search["time_limit"])
-            front = front_of(subject, progress=tell, **search)
-            if not front.points:
-                complain(f"{source}: {nothing_to_cover(front.instance)}")
-                return Exit.STOPPED
-            rows: list[Any] = list(front) if share is None else [front.fewest_for(share)]
-        _print(source, (row.to_document() for row in rows), "\n".join(map(str, rows)), as_json)
-        draw(lambda file: save_front(front, file))
+    with at_work(source, "asking", "the time limit came before any division was found") as tell:
+        subject = read_subject(source, search["time_limit"])
+        front = front_of(subject, progress=tell, **search)
+        if not front.points:
+            complain(f"{source}: {nothing_to_cover(front.instance)}")
+            return Exit.STOPPED
+        rows: list[Any] = list(front) if share is None else [front.fewest_for(share)]
+    _print(source, (row.to_document() for row in rows), "\n".join(map(str, rows)), as_json)
     return Exit.done_if(all(row.proved for row in rows))
 
 

@@ -20,7 +20,7 @@ from cellcolor.cli.options import (
 )
 from cellcolor.cli.progress import at_work
 from cellcolor.cli.terminal import apart_from, print_json, say, say_lines
-from cellcolor.data.wording import count, listed
+from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, naming
 from cellcolor.files.writing import Output, check_output, kind_of_format, write
@@ -162,12 +162,8 @@ def import_(source: Path, output: Path, corrections: tuple[str, ...]) -> Exit:
 
 
 @cellcolor.command()
-@option("--family", None, "Only the graphs of this family.", metavar="NAME")
-@click.option(
-    "--open", "only_open", is_flag=True, help="Only graphs whose minimum is open in a search space."
-)
 @json_option("Print JSON Lines, one entry of the index per line.")
-def library(family: str | None, only_open: bool, as_json: bool) -> Exit:
+def library(as_json: bool) -> Exit:
     """List the graphs of the instance library, with what is known of their minima.
 
     Commands take them by name, and check takes the stored solution of one as NAME.solution.json.
@@ -178,25 +174,17 @@ def library(family: str | None, only_open: bool, as_json: bool) -> Exit:
     from cellcolor.door.shipped import library as shipped
 
     entries = shipped().index.entries
-    families = sorted({entry.family for entry in entries})
-    if family is not None and family not in families:
-        raise InputError(None, "--family", f"there is no {family!r}, only {listed(families)}")
-    chosen = [
-        entry
-        for entry in entries
-        if family in (None, entry.family) and (entry.is_open or not only_open)
-    ]
     if as_json:
-        for entry in chosen:
+        for entry in entries:
             print_json(asdict(entry))
         return Exit.DONE
     numbers = ("cells", "darts", "loops", "colors", "holes", "paper", "any division", "verified")
     columns = {"name": "fold", "family": "fold"} | dict.fromkeys(numbers, "right")
-    console().print(table_of(columns, map(_row, chosen)))
+    console().print(table_of(columns, map(_row, entries)))
     console().print(
-        f"{count(len(chosen), 'graph')}. darts, loops: live ones of the cell that has most; paper, "
-        "any division: where the fewest\nsegments lie; verified: the lower bound for any division "
-        "has a certificate of that kind, which needs no solver"
+        f"{count(len(entries), 'graph')}. darts, loops: live ones of the cell that has most; "
+        "paper, any division: where the fewest\nsegments lie; verified: the lower bound for any "
+        "division has a certificate of that kind, which needs no solver"
     )
     return Exit.DONE
 

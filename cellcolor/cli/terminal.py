@@ -7,12 +7,12 @@ import json
 import os
 import sys
 import unicodedata
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, redirect_stdout, suppress
 from pathlib import Path
 from typing import Any, TextIO, cast
 
-from cellcolor.files.writing import check_output, is_standard_output
+from cellcolor.files.writing import is_standard_output
 
 # Control and format characters, lone surrogates, separators of lines and paragraphs: a name with
 # them could move a terminal's cursor, recolor it, or turn the direction of what follows.
@@ -132,35 +132,3 @@ def apart_from(path: Path | None) -> Iterator[None]:
             yield
     else:
         yield
-
-
-@contextmanager
-def drawn_to(
-    picture: Path | None, inputs: Sequence[Path], silent: bool
-) -> Iterator[Callable[[Callable[[Path], None]], None]]:
-    """A plot that a command may be asked for: refused first, written and told last.
-
-    Args:
-        picture: where it goes; None if nobody asked.
-        inputs: files that the command reads.
-        silent: whether nothing is said of it.
-
-    Yields:
-        What takes the function that writes it.
-
-    Raises:
-        InputError: the plot cannot go there.
-    """
-    if picture is not None:
-        from cellcolor.door.drawing import kind_of_plot
-
-        check_output(picture, kind_of_plot(picture), inputs)
-
-    def draw(save: Callable[[Path], None]) -> None:
-        if picture is not None:
-            save(picture)
-            if not silent:
-                say(f"wrote {picture}")
-
-    with apart_from(picture):
-        yield draw

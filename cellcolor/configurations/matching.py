@@ -122,9 +122,9 @@ class Matching(ABC):
         """The matches along mesh edges (k, 2).
 
         Returns:
-            Pairs (l, 3): rows of edges, and the configurations at both ends; and the strength (l,)
-            of each, how much nearer the two are to each other than to others: 2 or more where it is
-            clear, infinite where it is known.
+            Pairs (l, 3), each a row of the edges and the configurations at both ends; and the
+            strength (l,) of each, how much nearer the two are to each other than to others. It is 2
+            or more where that is clear, infinite where it is known.
         """
         slots, apart = self.there.shape[1], self._apart()
         pairs, strengths = [np.empty((0, 3), dtype=np.int64)], [np.empty(0)]

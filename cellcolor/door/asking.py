@@ -6,7 +6,6 @@ from os import PathLike
 from typing import TYPE_CHECKING, Unpack
 
 from cellcolor.door.asked import SearchAndTell, options_of
-from cellcolor.door.drawing import save_plot
 from cellcolor.door.extras import extras_for
 from cellcolor.door.leaving_out import left_alone as without_place
 from cellcolor.door.subject import Solvable, open_subject, scene_or_file
@@ -45,17 +44,6 @@ def tradeoff(
     from cellcolor.questions.tradeoff import front_of  # imports a solver
 
     return front_of(subject.graph(options.deadline), options, progress)
-
-
-def save_front(front: Front, path: str | PathLike[str]) -> None:
-    """Draw a front to a file .png or .svg; see :func:`~cellcolor.door.drawing.save_plot`."""
-
-    def render(form: str) -> bytes:
-        from cellcolor.pictures.plots import render_front
-
-        return render_front(front, form)
-
-    save_plot(path, render)
 
 
 def explain(

@@ -112,17 +112,6 @@ def kind_of_picture(path: Path) -> FileKind:
     return kind
 
 
-def kind_of_plot(path: Path) -> FileKind:
-    """The kind of file for a plot of curves.
-
-    Raises:
-        InputError: no plot has this suffix.
-    """
-    if path.suffix not in (".png", ".svg"):
-        raise InputError(str(path), None, "must end in .png or .svg")
-    return _KINDS[path.suffix]
-
-
 def show(
     source: Solvable | Result,
     path: str | PathLike[str] | None = None,
@@ -303,20 +292,3 @@ def _checked(
     if solution.cells is None:
         raise InputError(file, "cells", "no division was found")
     return solution, report.bounds
-
-
-def save_plot(path: str | PathLike[str], render: Callable[[str], bytes]) -> None:
-    """Save a plot of curves as .png or .svg; only an older picture is overwritten.
-
-    Args:
-        render: returns the picture's bytes for a format, ``png`` or ``svg``.
-
-    Raises:
-        InputError: another suffix, the file is no picture of cellcolor's, it cannot be written, or
-            the extra ``viz`` is not installed.
-    """
-    file = path_of(path)
-    kind = kind_of_plot(file)
-    with extras_for("plots"):
-        content = render(file.suffix[1:])
-    write([Output(file, kind, [content])])

@@ -243,10 +243,6 @@ class Scene(FileTable):
         """The same scene with more obstacles in it."""
         return self.varied(obstacle=(*self.obstacle, *obstacles))
 
-    def with_test(self, *tests: ValidityTest) -> Self:
-        """The same scene with more tests of validity."""
-        return self.varied(validity_test=(*self.validity_test, *tests))
-
     def with_setup(self, setup: Setup | str | PathLike[str]) -> Self:
         """The same scene for another setup, a value or the name of its file."""
         return self.varied(setup=setup if isinstance(setup, Setup) else Setup.read(setup))

@@ -93,11 +93,16 @@ def link_fills(robot: Robot) -> dict[str, str]:
 
 
 def surroundings(prepared: PreparedScene) -> list[Layer]:
-    """The body of the part and the obstacles, in the world frame."""
+    """The body of the part, without what is covered of it, and the obstacles, in the world."""
     scene, layers = prepared.scene, []
     if scene.solid_object is not None:
-        body = scene.solid_object.surface(scene.folder).placed(scene.placement)
-        layers.append(Layer("collision object", BODY, body.vertices, body.faces))
+        body = scene.solid_object.surface(scene.folder)
+        faces = body.faces
+        if scene.collision_object is None and scene.cover is not None:
+            # What is covered lies in the same place, and would be hidden.
+            faces = faces[~scene.cover.chosen(body, scene.folder)]
+        body = body.placed(scene.placement)
+        layers.append(Layer("collision object", BODY, body.vertices, faces))
     if scene.obstacle:
         meshes = [_obstacle_mesh(each, scene.folder) for each in scene.obstacle]
         layers.append(Layer("obstacles", OBSTACLE, *_joined(meshes)))

@@ -90,9 +90,6 @@ class TestCheck:
         assert "not valid" in out
         assert "segments: says 1" in out
 
-    def test_another_instance(self, solved: Path) -> None:
-        assert run("check", PAPER / "dominated-by-crack.json", solved) == 1
-
     def test_wrong_scheme(self, solved: Path, capsys: Capture) -> None:
         self.change(solved, 2, lambda d: d["cells"][1]["subcells"][0].update(color=1))
         assert run("check", ZEROS, solved, "--json") == 1

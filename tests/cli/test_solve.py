@@ -87,17 +87,6 @@ class TestSolve:
         (line,) = json_lines(capsys.readouterr().out)
         assert (line["segments"], line["status"], line["surface_lower_bound"]) == (3, "feasible", 2)
 
-    def test_surface_like_its_instance(self, tmp_path: Path, capsys: Capture) -> None:
-        """What build writes beside a surface is what solve makes of that surface."""
-        surface = tmp_path / "s.surface.json"
-        surface.write_text((PAPER / "ring.surface.json").read_text("utf-8"), encoding="utf-8")
-        assert run("build", surface, "-o", tmp_path / "s.json") == 0
-        capsys.readouterr()
-        assert run("solve", surface, tmp_path / "s.json", "--json") == 0
-        lines = json_lines(capsys.readouterr().out)
-        assert [line["segments"] for line in lines] == [2, 2]
-        assert lines[0]["instance"] == lines[1]["instance"]
-
     def test_output_file(self, tmp_path: Path) -> None:
         out = tmp_path / "solution.json"
         assert run("solve", RING, "-o", out) == 0
@@ -129,12 +118,6 @@ class TestSolve:
         (line,) = err.splitlines()
         assert str(bad) in line
         assert len(list(folder.iterdir())) == 2
-
-    def test_overview_of_several(self, capsys: Capture) -> None:
-        assert run("solve", RING, CORRIDORS) == 0
-        rows = [line.split()[:4] for line in capsys.readouterr().out.splitlines()]
-        assert [str(RING), "3", "2", "1"] in rows
-        assert [str(CORRIDORS), "6", "3", "2"] in rows
 
     @pytest.mark.usefixtures("not_proved")
     def test_not_proved(self, tmp_path: Path, capsys: Capture) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import signal
-import sys
 from collections.abc import Iterator
 from contextlib import nullcontext
 from pathlib import Path
@@ -48,10 +47,6 @@ class TestAllSchemes:
         assert list(tmp_path.iterdir()) == [out]
         assert run("check", ZEROS, out) == 0
 
-    def test_table(self, capsys: Capture) -> None:
-        assert run("solve", PAPER / "figeasycell3.json", "--all") == 0
-        assert "\n3 schemes (all of them)\n" in capsys.readouterr().out
-
     @pytest.mark.parametrize(("limit", "code"), [(1, 3), (2, 3), (3, 0)])
     def test_limit(self, limit: int, code: int, tmp_path: Path, capsys: Capture) -> None:
         """There are three; a limit that is just enough leaves nothing open."""
@@ -85,16 +80,6 @@ class TestAllSchemes:
         assert run("solve", path, "--all", "--limit", 1024, "--json") == 0
         (line,) = json_lines(capsys.readouterr().out.splitlines()[-1])
         assert (line["schemes"], line["complete"]) == (colors**cells, True)
-
-    def test_progress_counts_schemes(
-        self, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-        monkeypatch.setenv("TERM", "xterm")
-        assert run("solve", ZEROS, "--all", "--json") == 0
-        out, err = capsys.readouterr()
-        assert "3 schemes so far" in err
-        assert json_lines(out)[0]["schemes"] == 3
 
     @pytest.mark.parametrize("ctrl_c", [False, True])
     def test_stopped(

@@ -78,7 +78,8 @@ def test_a_keep_out_zone(tmp_path: Path) -> None:
         # The side file knows the new reason by its name.
         (tmp_path / "zone.npz").write_bytes(result.candidates.to_bytes())
         assert CandidateTable.read(tmp_path / "zone.npz") == result.candidates
-        twice = scene.with_test(scene.validity_test[0].varied(highest_m=(0.5, 1.0, 2.0)))
+        zone = scene.validity_test[0]
+        twice = scene.varied(validity_test=(zone, zone.varied(highest_m=(0.5, 1.0, 2.0))))
         assert prepare(twice).judge.reason_names == result.reason_names
 
 

@@ -32,6 +32,19 @@ class TestScene:
         np.testing.assert_allclose(distances, 0.15, atol=1e-7)
         assert len(found) == 61
 
+    def test_what_is_covered_of_a_part_is_not_hidden_by_the_whole(self) -> None:
+        """The two would lie in one place: the segments of a door looked like bare metal."""
+        from cellcolor.frontend.prepared import prepare
+        from cellcolor.frontend.scene import Scene
+        from cellcolor.pictures.arm import surroundings
+
+        scene = Scene.read(INSTANCES / "scenes" / "square.toml")
+        half = {"box": {"low_m": [-1.0, -1.0, -1.0], "high_m": [0.0, 1.0, 1.0]}}
+        prepared = prepare(scene.varied(cover=half))
+        (rest,) = surroundings(prepared)
+        whole = len(scene.object.surface(scene.folder).faces)
+        assert len(rest.triangles) == whole - len(prepared.surface.faces) > 0
+
     def valid_at_the_top(self, scene: Path) -> str:
         from cellcolor.frontend import build_surface
 

@@ -35,7 +35,6 @@ def report(**changes: object) -> MotionReport:
         made.solution,
         made.painted,
         made.trajectory,
-        made.measures,
         made.verdict,
     )
     return replace(whole, **changes)
@@ -102,7 +101,7 @@ def test_a_page_without_a_motion_shows_what_there_is(tmp_path: Path) -> None:
     nothing = {"trajectory": None, "verdict": None, "missing": "The time limit came <first>."}
     stages = (
         ({"solution": None, "painted": None}, 1, 0),
-        ({"painted": None, "measures": ()}, 2, 0),
+        ({"painted": None}, 2, 0),
         ({"paths": made.paths}, 3, sum(len(path.points) for path in made.paths.paths)),
     )
     for there, modes, points in stages:

@@ -192,17 +192,12 @@ def test_the_command_prints_a_row_for_each_point(
     assert all(row["proved_for_surface"] is True for row in rows)
     assert run("tradeoff", file, "--share", "0.5") == 0
     assert capsys.readouterr().out.startswith("0 lift-offs: 5")
-    picture = tmp_path / "front.svg"
-    assert run("tradeoff", file, "-o", picture) == 0
-    drawn_text = picture.read_text()
-    assert all(f"{100 * row['covered_share']:.1f}" in drawn_text for row in rows)
     mask = tmp_path / "mask.json"
     mask.write_text('{"mask": [true]}')
     for wrong, said in (
         (("--left-alone", mask), "of another mesh"),
         (("--left-alone", "1,2,3,0,0,0"), "the box is empty"),
         (("--share", "nan"), "share"),
-        (("-o", file), "must end in .png or .svg"),
         (("--left-alone", tmp_path / "none.json"), "No such file"),
     ):
         assert run("tradeoff", file, *wrong) == 2
