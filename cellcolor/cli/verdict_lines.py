@@ -75,7 +75,7 @@ def say_trajectory(name: str, verdict: TrajectoryVerdict) -> None:
     say(f"  {count(verdict.strokes, 'stroke')}, {count(verdict.lift_offs, 'lift-off')}{seconds}")
     say(f"  {tested}")
     if verdict.minimum_lift_offs is not None:
-        extra = f"{verdict.claimed_extra} more stated, {verdict.unclaimed_extra} more not stated"
+        extra = f"{verdict.claimed_extra} more announced, {verdict.unclaimed_extra} more not"
         say(f"  fewest lift-offs on this surface, proved: {verdict.minimum_lift_offs}; {extra}")
     if verdict.covered is not None:
         say(f"  {verdict.covered}")

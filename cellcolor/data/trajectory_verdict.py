@@ -111,10 +111,12 @@ class CoveredArea(Value):
 
     def __str__(self) -> str:
         again = f"{self.repeated_m:.3f} of {self.length_m:.2f} m along earlier passes"
-        again += f", {self.stated_repeated_m:.3f} m of it stated"
+        again += f", {self.stated_repeated_m:.3f} m of it announced by the trajectory"
+        far, near = (f"{1e3 * factor * self.spacing_m:g} mm" for factor in (1.5, 0.75))
         return (
-            f"covered {self.covered_share:.2%}, closely {self.closely_covered_share:.2%}, rightly "
-            f"left out {self.left_out_share:.2%} of the {self.reachable_m2:.4f} m² with a color; "
+            f"within {far} of a pass {self.covered_share:.2%}, within {near} "
+            f"{self.closely_covered_share:.2%}, left out because the arm cannot reach it "
+            f"{self.left_out_share:.2%} of the {self.reachable_m2:.4f} m² with a color; "
             f"visits {self.mean_visits:.2f} on average, {self.most_visits} at most, again "
             f"on {self.visited_again_share:.1%}; {again}"
         )
@@ -129,9 +131,9 @@ class StrokeFeed(Value):
         time: when the stroke begins, s.
         seconds: how long it takes.
         asked_m_per_s: the setup's ``speed_m_per_s``.
-        mean_m_per_s: length by time.
-        lowest_m_per_s: the lowest mean over a stretch of ``window_m``, without the first and the
-            last such stretch, in which the tool comes from rest and goes to rest.
+        mean_m_per_s: length by time. This and what follows is without the first and the last
+            stretch of ``window_m``, in which the tool comes from rest and goes to rest.
+        lowest_m_per_s: the lowest mean over a stretch of ``window_m``.
         window_m: the tool's footprint, m.
         slow_share: share of the time in which the tool is slower than 90 % of what is asked.
         joint: that slows it down for the longest time; None if no joint is near a limit.

@@ -93,7 +93,6 @@ class UnfinishedPlan:
             solution=self.solution,
             painted=painted,
             trajectory=None,
-            measures=self.measures,
             verdict=None,
             paths=self.paths,
             missing=self.missing,

@@ -202,8 +202,9 @@ def arm_of(
     Raises:
         InputError: none does.
     """
-    from cellcolor.frontend.arm.assembly import fix_joints
+    from cellcolor.frontend.arm.assembly import check_position, settled
     from cellcolor.frontend.arm.kinematics import forward
+    from cellcolor.frontend.arm.loading import weight_faults
     from cellcolor.frontend.arm.urdf import load_urdf
     from cellcolor.frontend.contact.engine import always_touching, pairs_of
     from cellcolor.frontend.reach.prepared_arm import prepare_arm
@@ -212,16 +213,20 @@ def arm_of(
     flange = next((link for link in _FLANGES if link in arm.parent), None) or last_link(arm.parent)
     fixed = fixed_of(arm, flange, fix)
     with naming(urdf):
-        arm = fix_joints(arm, fixed)
-    chain = arm.chain(flange)
-    moved = next((at for at, link in enumerate(chain) if arm.joint_above.get(link) in arm.kinds), 0)
+        for name in arm.leading.keys() & fixed:
+            check_position(arm, name, fixed[name])
+        still, _ = settled(arm, fixed)
+    chain, moving = arm.chain(flange), arm.leading.keys() - still
+    moved = next((at for at, link in enumerate(chain) if arm.joint_above.get(link) in moving), 0)
     standing = [link for link in chain[: moved + 1] if link in arm.shapes]
-    weightless = bool(arm.weightless) or (tool is not None and is_weightless(load_urdf(tool)))
+    weightless = bool(weight_faults(arm, still)) or (
+        tool is not None and is_weightless(load_urdf(tool))
+    )
     keys = {
         "arm": urdf.name,
         "arm_urdf": json.dumps(_relative(urdf, folder)),
         "flange": json.dumps(flange),
-        "mount": mount_line(arm, flange),
+        "mount": mount_line(arm, flange, still),
         "tool": json.dumps("tool.urdf" if tool is None else _relative(tool, folder)),
         "tip": json.dumps(tip),
         "standing": json.dumps(standing),

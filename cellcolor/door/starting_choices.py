@@ -13,8 +13,6 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
 
 if TYPE_CHECKING:
-    import xml.etree.ElementTree as ET
-
     from cellcolor.arrays import Array, Index, Mask
     from cellcolor.frontend.arm.urdf import Urdf
     from cellcolor.frontend.parts.surface import Surface
@@ -26,7 +24,6 @@ CoverChoice = Literal["largest", "all"]
 
 _TOWARD = np.array([-1.0, 0.0, 1.0]) / np.sqrt(2)  # the part lies before the robot: up and back
 _ALONG = 1e-3  # rad; an axis so near to another one is along it
-_AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
 _OFF, _MOST_OFF = 1e-6, 1e-3  # m; a flange so far beside the last axis was measured, not meant
 _UPRIGHT, _AWRY = 0.5, 0.35  # how far the mean of normals leans; rad: less is not turned
 _ANY_WAY = 0.2  # the mean of the unit normals of what faces every way is shorter
@@ -52,18 +49,21 @@ def last_link(parent: dict[str, str]) -> str:
 
 def is_weightless(tool: Urdf) -> bool:
     """Whether a link with a shape has no mass."""
-    links = {link.get("name", ""): link for link in tool.xml.findall("link")}
-    return any(links[name].find("inertial") is None for name in tool.shapes)
+    return any(tool.links[name].find("inertial") is None for name in tool.shapes)
 
 
-def mount_line(arm: Urdf, flange: str) -> str:
+def mount_line(arm: Urdf, flange: str, still: Mapping[str, float]) -> str:
     """The setup's lines that put the tool's z axis onto the last joint's, if it is not there.
 
     Some vendors' flanges have their x axis along that of the joint, or lie a little beside it.
+
+    Args:
+        still: the positions of joints that stand still.
     """
+    from cellcolor.frontend.arm.assembly import last_axis
     from cellcolor.frontend.parts.placement import rpy_from_rotation
 
-    (x, y, z), beside = _last_axis(arm, flange)
+    (x, y, z), beside = last_axis(arm, flange, still)
     lines = ""
     off = float(np.linalg.norm(beside))
     if _OFF < off < _MOST_OFF:
@@ -81,52 +81,18 @@ def mount_line(arm: Urdf, flange: str) -> str:
     return f"{lines}mount_rpy_rad = {angles}   # turns the tool's z axis onto the last joint's\n"
 
 
-def _last_axis(arm: Urdf, flange: str) -> tuple[Array, Array]:
-    """The last axis (3,) before the flange, in its frame, and how far beside it the flange is, m.
-
-    The axis points outward with all joints at zero.
-    """
-    from cellcolor.frontend.parts.placement import rotation_from_rpy
-
-    joints = {joint.get("name"): joint for joint in arm.xml.findall("joint")}
-    turn, out, link = np.eye(3), np.zeros(3), flange  # of the flange, seen from a link before it
-    axis: Array | None = None
-    beside = np.zeros(3)
-    while link in arm.parent:
-        joint = joints[arm.joint_above[link]]
-        if axis is None and arm.joint_above[link] in arm.kinds:
-            axis = _numbers(joint.find("axis"), "xyz", "1 0 0") @ turn
-            axis /= np.linalg.norm(axis)
-            beside = out @ turn - (out @ turn @ axis) * axis
-        if axis is not None and abs(ahead := axis @ (out @ turn)) > _AHEAD:
-            return np.asarray(axis * np.sign(ahead)), beside
-        xyz, rpy = (_numbers(joint.find("origin"), key, "0 0 0") for key in ("xyz", "rpy"))
-        rotation = rotation_from_rpy(*rpy)
-        turn, out, link = rotation @ turn, xyz + rotation @ out, arm.parent[link]
-    return np.array([0.0, 0.0, 1.0]) if axis is None else axis, beside
-
-
-def _numbers(element: ET.Element | None, key: str, usual: str) -> Array:
-    return np.array((usual if element is None else element.get(key, usual)).split(), dtype=float)
-
-
 def fixed_of(arm: Urdf, flange: str, given: Mapping[str, float]) -> dict[str, float]:
     """The positions of joints that stand still: those given, rails, and what is beside the chain.
 
     Where none is given, the one nearest to zero.
     """
-    from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC
+    from cellcolor.frontend.arm.urdf import PRISMATIC, limits_of
 
     in_chain = {arm.joint_above[link] for link in arm.chain(flange)[1:]}
-    joints = {joint.get("name", ""): joint for joint in arm.xml.findall("joint")}
     fixed = dict(given)
-    for name, kind in arm.kinds.items():
+    for name, kind in arm.leading.items():
         if name not in fixed and (kind == PRISMATIC or name not in in_chain):
-            limit = None if kind == CONTINUOUS else joints[name].find("limit")
-            ends = (0.0, 0.0)
-            if limit is not None:
-                ends = float(limit.get("lower", 0)), float(limit.get("upper", 0))
-            fixed[name] = float(np.clip(0.0, *ends))
+            fixed[name] = float(np.clip(0.0, *limits_of(arm.joints[name])))
     return fixed
 
 

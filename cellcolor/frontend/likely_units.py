@@ -13,7 +13,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from cellcolor.arrays import Array
-from cellcolor.data.wording import in_meters, looks_like_millimeters
+from cellcolor.data.wording import in_meters, looks_like_degrees, looks_like_millimeters
 from cellcolor.errors import InputError
 from cellcolor.frontend.contact.obstacle import HalfSpaceObstacle
 from cellcolor.frontend.parts.surface import Surface
@@ -22,6 +22,7 @@ from cellcolor.frontend.setup import Motion, Setup
 
 _REACHES = 20  # a wing of 10 m is a part; what is larger than this, or as far away, is none
 _FASTEST = 15.0  # m/s; the fastest pick-and-place robots stay below
+_QUICKEST = 100.0  # rad/s²; joints of small arms reach 30 to 50
 _PLAUSIBLE = 0.2  # of the reach: a tool of that radius is a large one
 
 
@@ -115,8 +116,12 @@ def _within_reach(lengths: dict[str, float], reach: float) -> None:
 
 
 def notes_on_units(scene: Scene, reach: float) -> tuple[str, ...]:
-    """Things so far away that they may have been given in millimeters, one sentence each."""
-    found = []
+    """What was perhaps given in millimeters or degrees, and does no harm, one sentence each."""
+    found, motion = [], scene.setup.motion
+    quickest = max(() if motion is None else motion.joint_accelerations_rad_per_s2, default=0.0)
+    if quickest > _QUICKEST:
+        meant = f"{looks_like_degrees(quickest)} (per s²; no joint is known to reach more than 50)"
+        found.append(f"motion.joint_accelerations_rad_per_s2: {meant}")
     if scene.ground is not None and abs(scene.ground.height_m) > _REACHES * reach:
         found.append(f"ground.height_m: {looks_like_millimeters(scene.ground.height_m)}")
     for number, obstacle in enumerate(scene.obstacle):

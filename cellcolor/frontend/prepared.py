@@ -14,7 +14,7 @@ import numpy as np
 
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
-from cellcolor.frontend.arm.far_shapes import notes_on_shapes
+from cellcolor.frontend.arm.far_shapes import notes_on_shapes, too_large
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.shape import Shape
 from cellcolor.frontend.contact.engine import Contacts, always_touching, pairs_of
@@ -192,6 +192,9 @@ def _in_place(prepared: PreparedScene) -> PreparedScene:
     fixed = [each for each in robot.bodies if each.joint == 0 and scene.setup.constraints.collision]
     for each in fixed:
         if Contacts([(each, body, margin)], robot)(np.zeros((1, robot.joints)))[0]:
+            why = too_large(robot, each)
+            if why is not None:
+                raise InputError(str(robot.files[0]), f"link[{each.link}].collision", why)
             wider = f", or nearer than {margin:g} m (margins.to_object_m)" if margin else ""
             message = f"the object stands in the robot's {each.link!r}{wider}"
             raise InputError(None, "placement", message)

@@ -13,15 +13,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.motion.following import (
-    Followed,
-    blocked,
-    bowed,
-    follow,
-    joint_space,
-    off_way,
-    unwound,
-)
+from cellcolor.motion.following import Followed, blocked, follow, joint_space, off_way, unwound
 from cellcolor.motion.refusing import ArmRefusals
 from cellcolor.motion.samples import Samples, even_places, sampled, with_normals_of
 from cellcolor.motion.small_triangles import JUMP
@@ -111,7 +103,6 @@ def _course(
         joints, reasons, torn = followed.joints, followed.reasons, followed.torn
         valid = reasons == VALID
         bad = np.abs(np.diff(joints, axis=0)).max(axis=1) > _FARTHEST
-        bad |= bowed(prepared.robot, joints)
         for share in _BETWEEN:
             way = joints[:-1] + share * np.diff(joints, axis=0)
             inner = places[:-1] + share * np.diff(places)

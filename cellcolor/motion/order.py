@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise, permutations
 
 import numpy as np
@@ -14,7 +14,6 @@ from cellcolor.motion.strokes import Stroke
 
 _STARTS = 12  # of a closed stroke that are tried
 _ALL_ORDERS = 6  # up to this many strokes, every order is tried
-_BETTER = 1e-9  # s; by less no order counts as better
 
 
 def ordered(
@@ -26,9 +25,8 @@ def ordered(
 ) -> list[Stroke]:
     """The strokes in order, each in its direction and from its start; turns are chosen later.
 
-    For a few strokes every order is tried. For more, the nearest stroke comes next; then strokes
-    are moved and sequences reversed as long as that helps. A way between two strokes is as long as
-    its slowest joint takes in the shorter direction.
+    For a few strokes every order is tried; for more, the nearest stroke comes next. A way between
+    two strokes is as long as its slowest joint takes in the shorter direction.
 
     Args:
         strokes: each fits into the limits.
@@ -70,7 +68,6 @@ def ordered(
         best = min(deadline.watch(every), key=lambda order: best_of(order)[0])
     else:
         best = _nearest_next(rows, between, from_home)
-        best = _improved(best, lambda order: best_of(order)[0], deadline)
     return [ways[number] for number in best_of(best)[1]]
 
 
@@ -98,23 +95,4 @@ def _nearest_next(rows: Sequence[Index], between: Array, from_home: Array) -> li
         near = {at: float(between[np.ix_(rows[order[-1]], rows[at])].min()) for at in left}
         order.append(min(left, key=near.__getitem__))
         left.remove(order[-1])
-    return order
-
-
-def _improved(
-    order: list[int], cost: Callable[[Sequence[int]], float], deadline: Deadline
-) -> list[int]:
-    """Move strokes and reverse sequences as long as that helps."""
-    value, better = cost(order), True
-    while better:
-        better = False
-        for first in range(len(order)):
-            deadline.check()
-            for last in range(first + 1, len(order)):
-                head, part, tail = order[:first], order[first : last + 1], order[last + 1 :]
-                for moved in ([*part[1:], part[0]], [part[-1], *part[:-1]], part[::-1]):
-                    found = cost([*head, *moved, *tail])
-                    if found < value - _BETTER:
-                        order, value, better = [*head, *moved, *tail], found, True
-                        part = moved
     return order

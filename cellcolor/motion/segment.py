@@ -18,7 +18,7 @@ from cellcolor.motion.following import joint_space
 from cellcolor.motion.refusing import ArmRefusals
 from cellcolor.motion.small_triangles import CornerStates
 from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
-from cellcolor.motion.windings import parts_of, walls_of
+from cellcolor.motion.windings import steps_of, walls_of
 from cellcolor.tool_paths.cover import Bounds, Covered, cover
 from cellcolor.tool_paths.overlap import Overlap
 from cellcolor.tool_paths.region import Segments
@@ -130,25 +130,20 @@ def _between_walls(
     Args:
         parted: how many strokes there are without walls.
     """
-    prepared, surface, small = ground.prepared, ground.segments.surface, ground.states.small
+    prepared, surface, mesh = ground.prepared, ground.segments.surface, ground.states.small.whole
     space = joint_space(prepared)
     color = ground.segments.colors[segment]
     cracks = [crack for crack in surface.cracks if color in crack.colors]
-    closed = small.whole.marked([(crack.i, crack.j) for crack in cracks])
-    parts = parts_of(ground.states, segment, closed)
-    walls = walls_of(parts, small.whole, space, ground.deadline)
-    if not walls.whole:
-        # Some part reaches beyond the limits; only what does is left out, not the whole part.
-        parts = parts.at_vertices(small.whole, closed, space)
-        walls = walls_of(parts, small.whole, space, ground.deadline)
-        refusals.keep_inside(parts.part_of, walls.turns)
+    closed = mesh.marked([(crack.i, crack.j) for crack in cracks])
+    steps = steps_of(ground.states, segment, closed)
+    walls, joint = walls_of(steps, mesh, space, ground.deadline)
     for _ in range(_ROUNDS):
-        covered, courses = _courses(ground, segment, branch, refusals, walls.edges)
+        covered, courses = _courses(ground, segment, branch, refusals, walls)
         strokes = _on(ground, courses, branch)
         if not _refuse_what_is_beyond(courses, strokes, space, refusals):
             break
-    if not walls.whole:
-        text = f"{prepared.robot.joint_names[walls.joint]} cannot follow the whole segment"
+    if joint is not None:
+        text = f"{prepared.robot.joint_names[joint]} cannot follow the whole segment"
         for at in range(parted, len(strokes)):
             parting = Parting.at("winding", text, strokes[at].points[0])
             strokes[at] = replace(strokes[at], parting=parting)
@@ -157,7 +152,7 @@ def _between_walls(
         for stroke in strokes
         for part in cut_where_full(stroke, space, prepared.robot.joint_names)
     ]
-    return covered, _worth_a_lift_off(cut, ground.motion.spacing_m), walls.edges
+    return covered, _worth_a_lift_off(cut, ground.motion.spacing_m), walls
 
 
 def _refuse_what_is_beyond(

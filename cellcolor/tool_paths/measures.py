@@ -9,12 +9,11 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, numbered
 from cellcolor.mesh.triangle_mesh import grouped
-from cellcolor.tool_paths.rounding import Line
+from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.triangles import Triangles
 
 _SAMPLES = 4000  # at which visits are counted, for one path
 _FINE = 8  # samples of the path on each spacing
-_SHARP = np.cos(np.radians(60.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,10 +49,6 @@ class PathMeasures:
         covered: share of the area within 0.75 spacings of it.
         mean_visits: passes within half a spacing of a point, in the mean over the area. A pass
             is a stretch of path that long as it stays so near.
-        most_visits: the greatest number of these passes.
-        density: length x spacing / area; 1 where nothing is covered twice.
-        sharp_turns: share of the path's inner points at which it turns by over 60 degrees.
-        longest_step_m: between two points of the path.
         border_m: length of the covered part's border.
     """
 
@@ -62,36 +57,25 @@ class PathMeasures:
     covered_wide: float
     covered: float
     mean_visits: float
-    most_visits: int
-    density: float
-    sharp_turns: float
-    longest_step_m: float
     border_m: float
 
     def __str__(self) -> str:
-        visits = f"{self.mean_visits:.2f} visits ({self.most_visits} at most)"
+        visits = f"{self.mean_visits:.2f} visits"
         return f"{self.length_m:.2f} m, {100 * self.covered:.2f} % covered, {visits}"
 
 
-def measure(line: Line, segment: int, spacing: float) -> tuple[PathMeasures, list[Uncovered]]:
+def measure(laid: Laid, segment: int, spacing: float) -> tuple[PathMeasures, list[Uncovered]]:
     """Measure a path, and find what it leaves uncovered."""
-    mesh = line.mesh
-    steps = np.diff(line.points, axis=0)
-    lengths = np.linalg.norm(steps, axis=1)
-    distances = mesh.distances_from(*_beside(line))
+    mesh = laid.mesh
+    distances = mesh.distances_from(np.unique(laid.walk))
     areas = mesh.vertex_areas
     area = float(areas.sum())
-    visits = visits_of(line, spacing)
     measures = PathMeasures(
         area,
-        float(lengths.sum()),
+        float(np.linalg.norm(np.diff(laid.points, axis=0), axis=1).sum()),
         share_within(mesh, distances, 1.5 * spacing),
         share_within(mesh, distances, 0.75 * spacing),
-        float(visits.mean()),
-        int(visits.max()),
-        float(lengths.sum() * spacing / area),
-        sharp_turns(steps),
-        float(lengths.max()),
+        float(visits_of(laid, spacing).mean()),
         float(mesh.lengths[mesh.triangles_at == 1].sum()),
     )
     far = distances > 0.75 * spacing
@@ -122,38 +106,15 @@ def share_within(mesh: Triangles, distances: Array, most: float) -> float:
     return min(1.0, float(np.average(share, weights=mesh.areas)))
 
 
-def sharp_turns(steps: Array) -> float:
-    """Share of the inner points of a path at which it turns by over 60 degrees."""
-    lengths = np.linalg.norm(steps, axis=1)
-    steps = steps[lengths > 0] / lengths[lengths > 0][:, None]
-    if len(steps) < 2:
-        return 0.0
-    return float(((steps[:-1] * steps[1:]).sum(axis=1) < _SHARP).mean())
-
-
-def _beside(line: Line) -> tuple[Index, Array]:
-    """The corners of all triangles that a path lies in, and how far it is from each, m."""
-    corners = line.mesh.corners[line.triangles]
-    start, step = line.points[:-1, None], np.diff(line.points, axis=0)[:, None]
-    off = line.mesh.points[corners] - start
-    length = np.maximum((step**2).sum(axis=2), 1e-300)
-    share = np.clip((off * step).sum(axis=2) / length, 0.0, 1.0)
-    far = np.linalg.norm(off - share[:, :, None] * step, axis=2).ravel()
-    vertices, number = np.unique(corners, return_inverse=True)
-    nearest = np.full(len(vertices), np.inf)
-    np.minimum.at(nearest, number.ravel(), far)
-    return vertices, nearest
-
-
-def visits_of(line: Line, spacing: float) -> Index:
+def visits_of(laid: Laid, spacing: float) -> Index:
     """How many passes come within half a spacing of each of several places, even by area."""
-    mesh = line.mesh
+    mesh = laid.mesh
     rng = np.random.default_rng(0)
     chosen = rng.choice(len(mesh.corners), _SAMPLES, p=mesh.areas / mesh.areas.sum())
     shares = rng.dirichlet((1.0, 1.0, 1.0), _SAMPLES)[:, :, None]
     places = (mesh.points[mesh.corners[chosen]] * shares).sum(axis=1)
     outward = (mesh.normals[mesh.corners[chosen]] * shares).sum(axis=1)
-    points, normals = _sampled(line.points, line.normals, spacing / _FINE)
+    points, normals = _sampled(laid.points, laid.normals, spacing / _FINE)
     near = cKDTree(points).query_ball_point(places, spacing / 2, return_sorted=True)
     place = np.repeat(np.arange(len(places)), [len(found) for found in near])
     found = np.concatenate([np.array(rows, dtype=np.int64) for rows in near])
@@ -177,22 +138,20 @@ def _sampled(points: Array, normals: Array, longest: float) -> tuple[Array, Arra
     )
 
 
-def in_all(measures: list[PathMeasures], spacing: float) -> PathMeasures:
+def in_all(measures: list[PathMeasures]) -> PathMeasures:
     """The measures of several paths together; shares and means are weighed by area."""
     if not measures:
-        return PathMeasures(0.0, 0.0, 1.0, 1.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0)
-    area = sum(one.area_m2 for one in measures)
-    length = sum(one.length_m for one in measures)
-    areas, lengths = [one.area_m2 for one in measures], [one.length_m for one in measures]
+        return PathMeasures(0.0, 0.0, 1.0, 1.0, 0.0, 0.0)
+    areas = [one.area_m2 for one in measures]
+
+    def mean(name: str) -> float:
+        return float(np.average([getattr(one, name) for one in measures], weights=areas))
+
     return PathMeasures(
-        area,
-        length,
-        float(np.average([one.covered_wide for one in measures], weights=areas)),
-        float(np.average([one.covered for one in measures], weights=areas)),
-        float(np.average([one.mean_visits for one in measures], weights=areas)),
-        max(one.most_visits for one in measures),
-        length * spacing / area,
-        float(np.average([one.sharp_turns for one in measures], weights=lengths)),
-        max(one.longest_step_m for one in measures),
+        sum(areas),
+        sum(one.length_m for one in measures),
+        mean("covered_wide"),
+        mean("covered"),
+        mean("mean_visits"),
         sum(one.border_m for one in measures),
     )

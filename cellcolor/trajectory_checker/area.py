@@ -115,7 +115,7 @@ def _note_uncovered(reached: Reached, limits: Limits, faults: FaultList) -> None
         if share < least:
             text = (
                 f"{share:.3%} of the reachable area is within {factor * spacing:.4g} m of a pass "
-                f"or rightly left out, at least {least:.3%} has to be"
+                f"or out of the arm's reach as announced, at least {least:.3%} has to be"
             )
             faults.add("uncovered", text, place=reached.patches(mask)[0][1])
 
@@ -134,7 +134,7 @@ def _note_repeated(
         begin, end = sample[[stretch.earlier_first, stretch.earlier_last]].tolist()
         text = (
             f"runs for {length:.4f} m along an earlier pass, samples {begin} to {end}, allowed: "
-            f"{most:.4f} m unless they are stated"
+            f"{most:.4f} m unless the trajectory announces them"
         )
         place = contact.tips[first]
         faults.add("repeated", text, int(sample[first]), int(sample[last]), place=place)

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Mask
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import StrokeFeed
 from cellcolor.frontend.setup import Motion
@@ -41,19 +41,18 @@ def judge_feed(
         own = slice(first, after - 1)
         if after - first < 2 or (passed[own] <= 0).any():
             continue  # one sample has no feed; times that do not ascend are faults of their own
-        lowest, at = lowest_feed(passed[own], steps[own], window)
-        slow = steps[own] < SLOW * asked * passed[own]
+        mean, lowest, at, inner = feed_of(passed[own], steps[own], window)
+        slow = inner & (steps[own] < SLOW * asked * passed[own])
         joint, by = _limiting(load[:, own], slow * passed[own])
-        seconds, length = float(passed[own].sum()), float(steps[own].sum())
         one = StrokeFeed(
             segment=int(trajectory.segment[first]),
             time=float(trajectory.times[first]),
-            seconds=seconds,
+            seconds=float(passed[own].sum()),
             asked_m_per_s=asked,
-            mean_m_per_s=length / seconds,
+            mean_m_per_s=mean,
             lowest_m_per_s=lowest,
             window_m=window,
-            slow_share=float((slow * passed[own]).sum()) / seconds,
+            slow_share=float(passed[own][slow].sum() / passed[own][inner].sum()),
             joint=None if joint is None else trajectory.joint_names[joint],
             limited_by=by,
         )
@@ -95,11 +94,12 @@ def _steps(trajectory: Trajectory, dense: Dense) -> Array:
     return steps
 
 
-def lowest_feed(passed: Array, steps: Array, window: float) -> tuple[float, int]:
-    """The lowest mean feed over a stretch as long as the window, m/s, and the step it begins in.
+def feed_of(passed: Array, steps: Array, window: float) -> tuple[float, float, int, Mask]:
+    """The mean feed of a stroke and the lowest, m/s, where that begins, and the steps in between.
 
-    A stroke begins and ends at rest. So its first and its last stretch of that length do not count;
-    if it is not three times as long, its mean is all there is.
+    A stroke begins and ends at rest. So its first and its last stretch as long as the window do not
+    count; if it is not three times as long, all of it does, and the lowest feed is the mean. Else
+    the lowest is that over a stretch as long as the window, or over all that counts.
 
     Args:
         passed: (k,) seconds of each step.
@@ -108,14 +108,18 @@ def lowest_feed(passed: Array, steps: Array, window: float) -> tuple[float, int]
     way = np.concatenate([[0.0], np.cumsum(np.maximum(steps, _LEAST_STEP))])
     times = np.concatenate([[0.0], np.cumsum(passed)])
     if way[-1] < 3 * window:
-        return float(way[-1] / times[-1]), 0
+        mean = float(way[-1] / times[-1])
+        return mean, mean, 0, np.ones(len(steps), dtype=bool)
+    first, last = window, float(way[-1]) - window
+    inner = (way[1:] > first) & (way[:-1] < last)
+    mean = (last - first) / float(np.diff(np.interp([first, last], way, times))[0])
     # The mean is extreme where the stretch begins or ends at a sample.
-    begins = np.concatenate([way, way - window, [window, way[-1] - 2 * window]])
-    begins = begins[(begins >= window) & (begins <= way[-1] - 2 * window)]
+    begins = np.concatenate([way, way - window, [first, last - window]])
+    begins = begins[(begins >= first) & (begins <= last - window)]
     taken = np.interp(begins + window, way, times) - np.interp(begins, way, times)
     worst = int(np.argmax(taken))
     at = int(np.searchsorted(way, begins[worst], side="right")) - 1
-    return float(window / taken[worst]), at
+    return mean, min(mean, float(window / taken[worst])), at, inner
 
 
 def _load(trajectory: Trajectory, limits: JointLimits) -> Array:

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Mask
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
-from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.trajectory_checker.covered import Reached
 from cellcolor.trajectory_checker.dense import angles
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import POSE_ANGLE, POSE_DISTANCE
 
-_ASKED = 50  # samples that a guess at swapped columns has to fit
 _AREA_SHARE = 1.25  # of the stated area; the planner measures on another mesh than the judge
 
 
@@ -33,19 +29,15 @@ def judge_poses(
     apart = np.linalg.norm(trajectory.points - tips, axis=1)
     turned = _turned(robot, trajectory.normals, axes)
     wrong = (apart > POSE_DISTANCE) | (turned > POSE_ANGLE)
-    if not wrong.any():
-        return
-    swapped, joint = _swapped(trajectory, robot, np.flatnonzero(wrong))
     faults.add_stretches(
         "pose",
         wrong,
         np.maximum(apart / POSE_DISTANCE, turned / POSE_ANGLE),
         lambda k: (
-            f"the joints put the tip {1000 * apart[k]:.4g} mm off the stated point, the tool's "
-            f"axis {np.degrees(turned[k]):.4g} degrees off the stated normal{swapped}"
+            f"the joints put the tip {1000 * apart[k]:.4g} mm off the trajectory's own point, the "
+            f"tool's axis {np.degrees(turned[k]):.4g} degrees off its own normal"
         ),
         tips,
-        joint,
     )
 
 
@@ -58,36 +50,6 @@ def _turned(robot: Robot, normals: Array, axes: Array) -> Array:
     return np.where(length > 0, angles(unit, -axes), np.pi)
 
 
-def _swapped(trajectory: Trajectory, robot: Robot, wrong: Index) -> tuple[str, int | None]:
-    """Which two columns were probably swapped, and which joint the first one of them is."""
-    asked = wrong[np.unique(np.linspace(0, len(wrong) - 1, _ASKED).astype(int))]
-    joints, points, normals = (
-        getattr(trajectory, name)[asked] for name in ("joints", "points", "normals")
-    )
-
-    def fits(joints: Array, points: Array, normals: Array) -> bool:
-        poses = forward(robot, joints)
-        near = np.linalg.norm(points - poses.tip, axis=1) <= POSE_DISTANCE
-        return bool((near & (_turned(robot, normals, poses.tool_axis) <= POSE_ANGLE)).all())
-
-    def exchanged(columns: Array, i: int, j: int) -> Array:
-        order = np.arange(columns.shape[1])
-        order[[i, j]] = j, i
-        return columns[:, order]
-
-    names = trajectory.joint_names
-    for i, j in itertools.combinations(range(joints.shape[1]), 2):
-        if fits(exchanged(joints, i, j), points, normals):
-            return f"; it fits with {names[i]} and {names[j]} exchanged", i
-    poses = np.concatenate([points, normals], axis=1)
-    titles = ("x", "y", "z", "nx", "ny", "nz")
-    for i, j in itertools.combinations(range(6), 2):
-        other = exchanged(poses, i, j)
-        if fits(joints, other[:, :3], other[:, 3:]):
-            return f"; it fits with {titles[i]} and {titles[j]} exchanged", None
-    return "", None
-
-
 def judge_lift_offs(trajectory: Trajectory, minimum: int | None, faults: FaultList) -> None:
     """Note lift-offs that are stated but not there, and a number that the proof contradicts.
 
@@ -98,12 +60,12 @@ def judge_lift_offs(trajectory: Trajectory, minimum: int | None, faults: FaultLi
     stated = {extra.sample for extra in trajectory.extra_lift_offs}
     for extra in trajectory.extra_lift_offs:
         if extra.sample not in ends:
-            text = "an extra lift-off is stated after this sample, but there is none"
+            text = "an extra lift-off is announced after this sample, but there is none"
             faults.add("claim", text, extra.sample, place=np.array(extra.place))
     if minimum is None:
         return
     found = count(trajectory.lift_offs, "lift-off")
-    said = f"{count(len(stated), 'extra lift-off')} stated" if stated else "none stated as extra"
+    said = f"{len(stated) or 'none'} announced as extra"
     needed = trajectory.lift_offs - len(stated & ends)
     touched = set(trajectory.segment[trajectory.contact].tolist())
     skipped = {part.segment for part in trajectory.left_out} - touched
@@ -134,7 +96,7 @@ def judge_left_out(
     total, out = reached.total, float(reached.areas[reached.right].sum())
     stated = sum(part.area_m2 for part in trajectory.left_out)
     if out > _AREA_SHARE * stated + np.pi * spacing**2:
-        faults.add("claim", f"{stated:.6f} m² are stated to be left out, and {out:.6f} m² are")
+        faults.add("claim", f"{stated:.6f} m² are announced as left out, and {out:.6f} m² are")
     wrong = reached.uncovered
     for part, fails in zip(trajectory.left_out, failing.tolist(), strict=True):
         place = np.array(part.place)
@@ -144,8 +106,8 @@ def judge_left_out(
         apart = np.linalg.norm(vertices - place, axis=1)
         at = int(np.argmin(apart))
         if apart[at] > spacing:
-            text = f"segment {part.segment}: a stated left-out place is not on the surface"
+            text = f"segment {part.segment}: a place announced as left out is not on the surface"
             faults.add("claim", text, place=place)
         elif wrong[at] and not fails:
-            text = f"segment {part.segment}: stated as left out ({part.reason}), but reachable"
+            text = f"segment {part.segment}: announced as left out ({part.reason}), but reachable"
             faults.add("claim", text, place=place)

@@ -62,8 +62,6 @@ def main(folder: Path) -> None:
         areas, colors = parts(painted.surface, painted.segment_of)
         axis.add_collection(PolyCollection(areas, facecolors=colors, edgecolors="face", lw=0.2))
         axis.set(title=f"{title}: {said.length_m:.2f} m, cost {said.cost:.3f}", aspect="equal")
-        if said.narrow and said.narrowest is not None:
-            axis.plot(*said.narrowest.place[:2], "k+", markersize=12)
         axis.autoscale_view()
         axis.axis("off")
     target = folder / "borders-moved.png"

@@ -150,6 +150,14 @@ def test_a_wrong_obstacle_or_ground_is_said(scene: Varied) -> None:
     assert notes_on_units(scene().with_obstacle(near), 1.0) == ()
 
 
+@pytest.mark.parametrize(("quickest", "said"), [(300.0, True), (60.0, False)])
+def test_accelerations_in_degrees_are_said(scene: Varied, quickest: float, said: bool) -> None:
+    key = "joint_accelerations_rad_per_s2"
+    notes = prepare(scene(setup={key: (8.0,) * 5 + (quickest,)})).notes
+    found = [note for note in notes if note.startswith(f"motion.{key}: 300 looks like degrees")]
+    assert bool(found) == said
+
+
 def test_what_is_large_but_may_be_meant(scene: Varied) -> None:
     """A wing of 10 m before an arm of 1 m, and its far end."""
     wing = scene(radius_m=5.5, position_m=(5.0, 0.0, 0.0))

@@ -29,7 +29,6 @@ def page(*answers: object) -> str:
         made.solution,
         made.painted,
         made.trajectory,
-        made.measures,
         made.verdict,
         answered=AnsweredScene(made.built.surface, subject.decomposition, answers),
     )

@@ -35,7 +35,6 @@ def report(**changes: object) -> MotionReport:
         made.solution,
         made.painted,
         made.trajectory,
-        made.measures,
         made.verdict,
     )
     return replace(whole, **changes)
@@ -102,7 +101,7 @@ def test_a_page_without_a_motion_shows_what_there_is(tmp_path: Path) -> None:
     nothing = {"trajectory": None, "verdict": None, "missing": "The time limit came <first>."}
     stages = (
         ({"solution": None, "painted": None}, 1, 0),
-        ({"painted": None, "measures": ()}, 2, 0),
+        ({"painted": None}, 2, 0),
         ({"paths": made.paths}, 3, sum(len(path.points) for path in made.paths.paths)),
     )
     for there, modes, points in stages:
@@ -233,8 +232,7 @@ def test_the_arm_is_drawn_and_moves(page_file: Path) -> None:
         assert len(set(seen)) == 3
         assert page.locator("#overlay .dot").count() == len(stand_in().trajectory.left_out) > 0
         page.locator("#legend button", has_text="left out").click()
-        page.wait_for_timeout(300)
-        assert page.locator("#overlay .dot:visible").count() == 0
+        page.locator("#overlay .dot").wait_for(state="hidden")
         assert faults == []
 
 

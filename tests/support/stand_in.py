@@ -54,8 +54,7 @@ class StandIn:
     def measures(self) -> tuple[PathMeasures, ...]:
         """Made up: one of each path."""
         return tuple(
-            PathMeasures(0.1, path.length, 1.0, 0.99, 1.1, 3, 1.05, 0.2, 0.012, 0.8)
-            for path in self.paths.paths
+            PathMeasures(0.1, path.length, 1.0, 0.99, 1.1, 0.8) for path in self.paths.paths
         )
 
 

@@ -114,12 +114,6 @@ def test_the_campaign_says_what_was_accepted(
     assert "| none | 0 | 0 |" in out and "| all 2 | 2 | 0 |" in out
 
 
-def test_a_stroke_that_is_not_there_is_area_that_is_not_covered() -> None:
-    for number in range(2):
-        verdict = judged(dropped_stroke(cap(), number))
-        assert {"uncovered", "lift-offs"} <= set(verdict.fault_counts)
-
-
 def test_the_proved_minimum_is_held_against_the_drive() -> None:
     """One lift-off fewer contradicts the proof; one more is a fault unless it is stated."""
     _, built, trajectory = rasters.cap()

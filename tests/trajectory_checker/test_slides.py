@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from honest_drives import HONEST, Honest, dropped_stroke, rows_of
+from honest_drives import Honest
 from joint_paths import MOTION, SLIDE, driven_scara, scara_scene
 
 import cellcolor
@@ -17,7 +17,6 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.trajectory_checker.check import check_trajectory
-from cellcolor.trajectory_checker.tolerances import OFF_SURFACE
 
 pytestmark = pytest.mark.second
 
@@ -67,30 +66,6 @@ def test_a_scara_is_driven_with_the_proved_number_of_lift_offs(honest: Honest) -
     assert 0.13 < speed.max() <= 0.15 * (1 + 1e-9)
 
 
-@pytest.mark.parametrize("name", HONEST)
-def test_honest_drives_of_it_stay_valid(name: str, honest: Honest) -> None:
-    assert judged(honest.prepared, HONEST[name](honest)).faults == ()
-
-
-def test_a_row_doubled_at_full_speed_of_the_slide_is_refused(honest: Honest) -> None:
-    """The slide would stand still for 0.1 s and go on at once."""
-    trajectory = honest.trajectory
-    speed = np.abs(np.diff(trajectory.joints[:, SLIDE])) / np.diff(trajectory.times)
-    row = int(np.argmax(speed)) + 1
-    rows = np.insert(np.arange(len(trajectory.times)), row, row)
-    times = np.array(trajectory.times)[rows]
-    times[row + 1 :] += 0.1
-    verdict = judged(honest.prepared, rows_of(trajectory, rows, times=times))
-    faults = [fault for fault in verdict.of_kind("acceleration") if fault.joint == NAME]
-    assert faults and re.search(r"by \S+ m/s², allowed: 2$", faults[0].text)
-
-
-@pytest.mark.parametrize("number", [0, 1])
-def test_a_dropped_stroke_is_missed(number: int, honest: Honest) -> None:
-    forged = dropped_stroke(honest, number)
-    assert check_trajectory(driven_scara().built, forged).of_kind("uncovered")
-
-
 def test_a_slide_over_its_speed_is_refused(honest: Honest) -> None:
     """Only the slide is: the joints that turn may go a hundred times as fast."""
     motion = MOTION.model_copy(
@@ -120,30 +95,6 @@ def test_a_slide_beyond_its_limit_is_refused(honest: Honest) -> None:
     (fault,) = verdict.of_kind("joint limit")
     assert fault.joint == NAME
     assert "is at -0.01250 m, 12.5 mm beyond its limits of 0.00000 and 0.21000" in fault.text
-
-
-def test_a_slide_a_full_circle_off_is_another_place(honest: Honest) -> None:
-    slide = honest.trajectory.joints[:, SLIDE] + 2 * np.pi
-    verdict = judged(honest.prepared, moved(honest, slide))
-    assert verdict.of_kind("joint limit") and verdict.of_kind("off surface")
-
-
-def test_a_slide_that_lifts_the_tool_a_little_is_off_the_surface(honest: Honest) -> None:
-    """By 1.5 mm in a stroke, where the slope of the pipe is not steep."""
-    trajectory, (first, after) = honest.trajectory, honest.trajectory.strokes[0]
-    slide = trajectory.joints[:, SLIDE].copy()
-    middle = (first + after) // 2
-    slide[middle : middle + 20] += 1.5 * OFF_SURFACE
-    assert judged(honest.prepared, moved(honest, slide)).of_kind("off surface")
-
-
-def test_a_wrong_turn_of_the_tool_is_noted(honest: Honest) -> None:
-    joints = honest.trajectory.joints.copy()
-    joints[:, 3] += np.radians(2.0)
-    points = forward(honest.prepared.robot, joints).tip
-    verdict = judged(honest.prepared, replace(honest.trajectory, joints=joints, points=points))
-    assert verdict.of_kind("turned")
-    assert "2 degrees off the turn" in verdict.of_kind("turned")[0].text
 
 
 def test_an_arm_for_the_position_only_is_driven_as_well() -> None:

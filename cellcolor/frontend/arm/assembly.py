@@ -1,23 +1,32 @@
-"""Arm and tool as one tree: the tool on the flange, the joints beside the chain fixed.
+"""Arm and tool as one tree: the tool on the flange, the joints that stand still, Pinocchio's model.
 
-The tree is written so that Pinocchio reads all of it (:func:`pinocchio_text`). Continuous joints
-become revolute ones, which have one position each. Joints get the efforts and velocities that the
-reader asks for, links lose inertials that cannot be used, and pictures are left out. A mesh or a
-capsule becomes a small sphere in the same place.
+The tree is written so that Pinocchio reads all of it. Continuous joints become revolute ones, which
+have one position each. Joints get the efforts and velocities that the reader asks for, links lose
+inertials that cannot be used, and pictures are left out. A mesh or a capsule becomes a small sphere
+in the same place.
 """
 
 from __future__ import annotations
 
 import copy
+import math
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+import pinocchio as pin
 
+from cellcolor.arrays import Array
 from cellcolor.data.wording import looks_like_degrees
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC, Urdf, axis_of, check_urdf
+from cellcolor.frontend.arm.urdf import (
+    PRISMATIC,
+    Follower,
+    Urdf,
+    axis_of,
+    inertial_fault,
+    limits_of,
+)
 
 _FLANGES = ("tool0", "flange", "ee_link", "tool_flange", "wrist_3_link", "link_6")  # of vendors
 
@@ -41,154 +50,180 @@ def mount(
     Raises:
         InputError: the arm has no such link, or arm and tool share a name.
     """
-    if flange != arm.root and flange not in arm.parent:
+    if flange not in arm.links:
         usual = [name for name in _FLANGES if name in arm.parent]
         ends = [name for name in arm.parent if name not in arm.parent.values()]
         known = ", ".join(map(repr, dict.fromkeys([*usual, *ends])))
         message = f"the flange link is not in the arm, which has {known}"
         raise InputError(str(arm.file), f"link[{flange}]", message)
-    xml = ET.Element("robot", {"name": arm.xml.get("name", "arm")})
-    xml.extend(list(arm.xml))
-    taken = {(element.tag, element.get("name")) for element in arm.xml}
-    for element in tool.xml:
-        if element.tag in ("link", "joint") and (element.tag, element.get("name")) in taken:
-            field = f"{element.tag}[{element.get('name')}]"
-            raise InputError(str(tool.file), field, f"{arm.file.name} has that name too")
-        xml.append(element)
-    joint = ET.SubElement(xml, "joint", {"name": "tool_mount", "type": "fixed"})
+    for tag, own, others in (("link", tool.links, arm.links), ("joint", tool.joints, arm.joints)):
+        for name in own:
+            if name in others:
+                message = f"{arm.file.name} has that name too"
+                raise InputError(str(tool.file), f"{tag}[{name}]", message)
+    name = "tool_mount"
+    joint = ET.Element("joint", {"name": name, "type": "fixed"})
     ET.SubElement(joint, "parent", {"link": flange})
     ET.SubElement(joint, "child", {"link": tool.root})
-    if any((*position, *rpy)):
-        _set_origin(joint, np.array(position), rpy)
-    followers = {**arm.followers, **tool.followers}
-    return check_urdf(arm.file, arm.folder, xml, arm.locked + tool.locked, followers)
+    pose = {"xyz": " ".join(map(repr, position)), "rpy": " ".join(map(repr, rpy))}
+    ET.SubElement(joint, "origin", pose)
+    return Urdf(
+        file=arm.file,
+        folder=arm.folder,
+        root=arm.root,
+        links=arm.links | tool.links,
+        joints=arm.joints | tool.joints | {name: joint},
+        parent=arm.parent | tool.parent | {tool.root: flange},
+        joint_above=arm.joint_above | tool.joint_above | {tool.root: name},
+        kinds=arm.kinds | tool.kinds,
+        shapes=arm.shapes | tool.shapes,
+        followers=arm.followers | tool.followers,
+    )
 
 
-def fix_joints(urdf: Urdf, positions: Mapping[str, float]) -> Urdf:
-    """The same tree with some joints fixed, and with them those that follow these.
+def settled(
+    urdf: Urdf, positions: Mapping[str, float]
+) -> tuple[dict[str, float], dict[str, Follower]]:
+    """The positions of all joints that stand still, and the followers that move.
+
+    What follows a follower is returned as if it followed the first leader directly. A leader that
+    is a fixed joint is at zero.
 
     Args:
-        positions: of the joints by their names, rad, or m of prismatic ones. Other names are left
-            alone: they may be in another tree.
+        positions: of joints that are fixed, rad, or m of prismatic ones.
 
     Raises:
-        InputError: a position is outside the limits of its joint; names the joint in the setup.
+        InputError: a joint follows one that is not there, or itself.
     """
-    xml = copy.deepcopy(urdf.xml)
-    joints = {joint.get("name", ""): joint for joint in xml.findall("joint")}
-    locked = list(urdf.locked)
-    for name, position in positions.items():
-        if name in urdf.kinds:
-            _check_limits(joints[name], urdf.kinds[name], name, position)
-            _fix(joints[name], urdf.kinds[name], position)
-    for name, position in _following(urdf, positions).items():
-        _fix(joints[name], urdf.followers[name].kind, position)
-        if name in locked:
-            locked.remove(name)
-    return check_urdf(urdf.file, urdf.folder, xml, tuple(locked), urdf.followers)
-
-
-def _following(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, float]:
-    """The positions of all followers that are given one, or whose leader has one."""
-    found: dict[str, float] = {}
+    standing = {name: at for name, at in positions.items() if name in urdf.kinds}
+    moving = {}
     for name in urdf.followers:
-        path = [name]
-        while path[-1] not in positions and path[-1] in urdf.followers:
-            leader = urdf.followers[path[-1]].leader
-            if leader in path:
-                break
-            path.append(leader)
-        if path[-1] in positions:
-            position = positions[path[-1]]
-            for each in reversed(path[:-1]):
-                position = urdf.followers[each].multiplier * position + urdf.followers[each].offset
-            found[name] = position
-    return found
+        leader, factor, offset, seen = name, 1.0, 0.0, {name}
+        while leader in urdf.followers and leader not in positions:
+            own = urdf.followers[leader]
+            leader, offset = own.leader, offset + factor * own.offset
+            factor *= own.multiplier
+            if leader not in urdf.joints or leader in seen:
+                fault = "follows itself" if leader in seen else f"no joint {leader!r}"
+                raise InputError(None, f"joint[{name}].mimic", fault)
+            seen.add(leader)
+        if leader in urdf.kinds and leader not in positions and factor:
+            moving[name] = Follower(leader, factor, offset)
+        else:
+            standing[name] = factor * positions.get(leader, 0.0) + offset
+    return standing, moving
 
 
-def _check_limits(joint: ET.Element, kind: str, name: str, position: float) -> None:
-    limit = joint.find("limit")
-    if kind == CONTINUOUS or limit is None:
-        return
-    lower, upper = (float(limit.get(end, "nan")) for end in ("lower", "upper"))
+def check_position(urdf: Urdf, name: str, position: float) -> None:
+    """Refuse a position of a fixed joint outside of the joint's limits.
+
+    Raises:
+        InputError: names the joint in the setup.
+    """
+    lower, upper = limits_of(urdf.joints[name])
     if not lower <= position <= upper:
         message = f"{position:g} is outside the joint's limits, {lower:g} to {upper:g}"
-        if kind != PRISMATIC and abs(position) > 2 * np.pi:
+        if urdf.kinds[name] != PRISMATIC and abs(position) > 2 * math.pi:
             message += f": {looks_like_degrees(position)}"
         raise InputError(None, f"robot.fixed_joints.{name}", message)
 
 
-def _fix(joint: ET.Element, kind: str, position: float) -> None:
-    """Make a joint a fixed one in the pose that it has in a position."""
-    joint.set("type", "fixed")
-    if position == 0.0:
-        return
-    along, origin = _numbers(axis_of(joint)), joint.find("origin")
-    xyz, rpy = (
-        _numbers("0 0 0" if origin is None else origin.get(key, "0 0 0")) for key in ("xyz", "rpy")
-    )
-    turn = Rotation.from_euler("xyz", rpy)
-    if kind == PRISMATIC:
-        _set_origin(joint, xyz + turn.apply(position * along), tuple(rpy))
-        return
-    whole = (turn * Rotation.from_rotvec(position * along)).as_euler("xyz")
-    _set_origin(joint, xyz, tuple(whole))
+def pinocchio_models(
+    urdf: Urdf, standing: Mapping[str, float]
+) -> tuple[pin.Model, pin.GeometryModel]:
+    """Pinocchio's model and collision shapes, without the joints that stand still.
+
+    Args:
+        standing: their positions, rad, or m of prismatic ones.
+
+    Raises:
+        InputError: Pinocchio cannot read it.
+    """
+    xml = ET.Element("robot", {"name": "arm"})
+    xml.extend([_link(link) for link in urdf.links.values()])
+    xml.extend([_joint(joint, name in urdf.kinds) for name, joint in urdf.joints.items()])
+    text = ET.tostring(xml, encoding="unicode")
+    try:
+        model = pin.buildModelFromXML(text)
+        geometry = pin.buildGeomFromUrdfString(model, text, pin.GeometryType.COLLISION)
+    except (ValueError, RuntimeError) as error:
+        raise InputError(str(urdf.file), "robot", f"Pinocchio refuses it: {error}") from error
+    return without(model, geometry, standing)
 
 
-def _set_origin(joint: ET.Element, xyz: np.ndarray, rpy: tuple[float, ...]) -> None:
-    origin = joint.find("origin")
-    if origin is None:
-        origin = ET.SubElement(joint, "origin")
-    origin.set("xyz", " ".join(repr(float(value)) for value in xyz))
-    origin.set("rpy", " ".join(repr(float(value)) for value in rpy))
+def without(
+    model: pin.Model, geometry: pin.GeometryModel, standing: Mapping[str, float]
+) -> tuple[pin.Model, pin.GeometryModel]:
+    """The same without some joints, which stand still in the positions given."""
+    if not standing:
+        return model, geometry
+    q = np.zeros(model.nq)
+    for name, position in standing.items():
+        q[model.joints[model.getJointId(name)].idx_q] = position
+    locked = [*map(model.getJointId, standing)]
+    reduced: tuple[pin.Model, pin.GeometryModel] = pin.buildReducedModel(model, geometry, locked, q)
+    return reduced
 
 
-def _numbers(text: str) -> np.ndarray:
-    return np.array([float(part) for part in text.split()])
+_AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
+
+
+def last_axis(urdf: Urdf, flange: str, standing: Mapping[str, float]) -> tuple[Array, Array]:
+    """The last axis (3,) before the flange, in its frame, and how far beside it the flange is, m.
+
+    The axis points outward with all joints at zero.
+
+    Args:
+        standing: see :func:`pinocchio_models`.
+    """
+    model, _ = pinocchio_models(urdf, standing)
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, np.zeros(model.nq))
+    at = {frame.name: data.oMf[number] for number, frame in enumerate(model.frames)}
+    moving = urdf.leading.keys() - standing
+    links = list(reversed(urdf.chain(flange)))
+    last = next((k for k, link in enumerate(links) if urdf.joint_above.get(link) in moving), None)
+    if last is None:
+        return np.array([0.0, 0.0, 1.0]), np.zeros(3)
+    name = urdf.joint_above[links[last]]
+    own = np.array([float(part) for part in axis_of(urdf.joints[name]).split()])
+    axis = at[flange].rotation.T @ data.oMi[model.getJointId(name)].rotation @ own
+    ways = [at[flange].actInv(at[link]).translation for link in links[last:]]
+    beside = (ways[0] @ axis) * axis - ways[0]
+    ahead = next((far for way in ways if abs(far := -axis @ way) > _AHEAD), 1.0)
+    return np.asarray(axis * np.sign(ahead)), np.asarray(beside)
 
 
 _NO_LIMIT = 1e6  # rad; for those who ask the model itself
 
 
-def pinocchio_text(urdf: Urdf) -> str:
-    """The XML as one string."""
-    xml = ET.Element("robot", dict(urdf.xml.attrib))
-    faulty = {error.field for error in urdf.weightless}
-    for element in urdf.xml:
-        if element.tag == "joint":
-            xml.append(_joint(element))
-        elif element.tag == "link":
-            xml.append(_link(element, faulty))
-    return ET.tostring(xml, encoding="unicode")
-
-
-def _joint(given: ET.Element) -> ET.Element:
+def _joint(given: ET.Element, moves: bool) -> ET.Element:
     joint = copy.deepcopy(given)
-    continuous = joint.get("type") == CONTINUOUS
-    if continuous:
-        joint.set("type", "revolute")
-    limit = joint.find("limit")
-    if joint.get("type") == "fixed":
-        if limit is not None:  # of a joint that stands still now; it may be incomplete
-            joint.remove(limit)
-    else:
+    for tag in ("mimic", "safety_controller", *(() if moves else ("limit",))):
+        for element in joint.findall(tag):
+            joint.remove(element)
+    if moves:
+        limit = joint.find("limit")
         if limit is None:
             limit = ET.SubElement(joint, "limit")
+        ends = (-_NO_LIMIT, _NO_LIMIT)
+        if joint.get("type") == "continuous":
+            joint.set("type", "revolute")
+        elif given.find("mimic") is None:
+            ends = limits_of(given)
+        for end, value in zip(("lower", "upper"), ends, strict=True):
+            limit.set(end, repr(min(max(value, -_NO_LIMIT), _NO_LIMIT)))
         for attribute in ("effort", "velocity"):
             limit.set(attribute, limit.get(attribute, "0"))
-        if continuous:
-            limit.set("lower", str(-_NO_LIMIT))
-            limit.set("upper", str(_NO_LIMIT))
     return joint
 
 
-def _link(given: ET.Element, faulty: set[str | None]) -> ET.Element:
+def _link(given: ET.Element) -> ET.Element:
     link = copy.deepcopy(given)
     for visual in link.findall("visual"):
         link.remove(visual)
     inertial = link.find("inertial")
-    field = f"link[{link.get('name')}].inertial"
-    if inertial is not None and any((f or "").startswith(field) for f in faulty):
+    if inertial is not None and inertial_fault(given):
         link.remove(inertial)
     for collision in link.findall("collision"):
         geometry = collision.find("geometry")

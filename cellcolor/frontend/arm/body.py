@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -158,6 +158,7 @@ def place_shapes(
     whole: Urdf,
     model: pin.Model,
     geometry: pin.GeometryModel,
+    frames: Sequence[int],
     shapes: Shapes,
 ) -> tuple[tuple[Body, ...], tuple[StandIn, ...]]:
     """Bodies of all links, base first, and what stands for the meshes among them.
@@ -166,6 +167,7 @@ def place_shapes(
         trees: arm and tool, for the names and folders of their files.
         whole: both as one tree.
         model, geometry: as Pinocchio has read it, meshes as spheres.
+        frames: the number that the frame behind each joint has.
 
     Raises:
         InputError: Pinocchio has read other shapes, or a mesh cannot be found or read.
@@ -186,11 +188,12 @@ def place_shapes(
         if len(placed) != len(own):
             message = f"Pinocchio read {len(placed)} of {len(own)} shapes"
             raise InputError(str(whole.file), f"link[{link}].collision", message)
-        bodies += _round_bodies(link, int(placed[0].parentJoint), own, placed)
+        joint = frames[placed[0].parentJoint]
+        bodies += _round_bodies(link, joint, own, placed)
         for number, (shape, at) in enumerate(zip(own, placed, strict=True)):
             if shape.kind not in ("box", "mesh"):
                 continue
-            joint, turn = int(at.parentJoint), np.array(at.placement.rotation)
+            turn = np.array(at.placement.rotation)
             center = np.array(at.placement.translation)
             if shape.kind == "box":
                 corners = trimesh.creation.box(shape.sizes).vertices

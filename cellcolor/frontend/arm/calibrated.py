@@ -6,10 +6,8 @@ are starts for Newton's method on the true arm (one step of a homotopy, with sev
 from singularities each start leads to a solution of its own, and none is missed. Next to a fold, a
 singularity where two solutions meet or have just vanished, the true solutions may be far from the
 ideal ones, as round the circle of solutions of an aligned wrist. So there are more starts:
-
-1. the ideal arm's solutions of the pose;
-2. two beside each that is next to a fold, along the motion that leaves the task where it is;
-3. the ideal arm's solutions of twelve poses around, if they are far from those of the pose.
+two beside each ideal solution that is next to a fold, along the motion that leaves the task where
+it is; and the ideal arm's solutions of twelve poses around, if they are far from those of the pose.
 
 Newton's method drops what does not lead to the pose. Signs of shoulder, elbow and wrist name the
 solutions (:mod:`cellcolor.frontend.arm.signs`); without signs equal ones are merged. If one branch
@@ -26,26 +24,23 @@ noticed; two that vanish together at a singularity are not missing.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, unit
 from cellcolor.frontend.arm.kinematics import (
+    TASK_JOINTS,
     forward,
     nearest_points,
     signed_task_determinant,
+    task_jacobian,
     tip_jacobian,
 )
 from cellcolor.frontend.arm.newton import (
     SAME,
-    both_sides_of_folds,
-    merged,
-    named_slots,
+    Polished,
     nearest,
-    polished,
 )
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import BRANCHES, Signs
@@ -150,45 +145,27 @@ def remark_on_missing(robot: Robot, solutions: Array) -> str:
 CALIBRATION = 0.01
 """What a calibrated arm's axes may be off the ideal ones, rad and m; usual is a tenth of it."""
 
-_FARTHEST = 0.2  # m, and for unit vectors; by how much a start may miss the pose
-
 _GOLDEN = (1 + 5**0.5) / 2
 _ICOSAHEDRON = [(0.0, first, second * _GOLDEN) for first in (1, -1) for second in (1, -1)]
 _AROUND = np.array([np.roll(corner, k) for corner in _ICOSAHEDRON for k in range(3)])
 _AROUND /= np.linalg.norm(_AROUND[0])
 _FARTHER = 5.0  # times what the axes are off: so far from a pose are those around it
 _ANOTHER = 0.1  # rad; an ideal solution of a pose around that is farther away is a start of its own
+_FOLDED = 0.05  # smallest singular value; below it two solutions are about to meet
+_APART = 0.1  # rad, to both sides of there
 _ELBOW_AND_WRIST = 3  # the bits of both in a branch's index
 
 
-@dataclass(frozen=True)
-class NearIdeal:
-    """A calibrated arm: its axes are a little off those of an ideal arm.
+@dataclass(frozen=True, kw_only=True)
+class NearIdeal(Polished):
+    """A calibrated arm: its axes are a little off those of an ideal arm, whose is the closed form.
 
     Attributes:
-        robot: the true arm.
-        closed_form: of the ideal arm: points (k, 3) in m and unit vectors (k, 3) to solutions
-            (k, s, joints) in rad, NaN where there is none. Given ``branches`` (k,) it may leave out
-            all others.
         off: the largest angle in rad and distance in m of an axis from the ideal one.
-        signs: what names solutions; None if they have no names.
-        sign_of: (8,) the index that the signs have for each branch.
     """
 
-    robot: Robot
-    closed_form: Callable[..., Array]
     off: tuple[float, float]
-    signs: Signs | None
-    sign_of: NDArray[np.intp] = field(default_factory=lambda: np.arange(len(BRANCHES)))
-
-    def solve(
-        self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
-    ) -> Array:
-        """See :meth:`cellcolor.frontend.arm.inverse.InverseKinematics.solve`."""
-        if branches is None:
-            found = self._all(points, directions)
-            return found if self.signs is None else found[:, self.sign_of]
-        return self._one_each(points, directions, self.sign_of[branches], branches)[:, None]
+    farthest: float = 0.2
 
     def remarks(self, solutions: Array) -> tuple[str, ...]:
         """How the arm is solved, and how many of its solutions (n, s, joints) are missing."""
@@ -199,35 +176,10 @@ class NearIdeal:
             f"{remark_on_missing(self.robot, solutions)}",
         )
 
-    def _one_each(
-        self, points: Array, directions: Array, signs: NDArray[np.intp], branches: NDArray[np.intp]
-    ) -> Array:
-        """The solution (n, joints) of one branch of each pose, the same as among all."""
-        starts = self.closed_form(points, directions, branches=branches)
-        chosen = self._from(starts, points, directions)[np.arange(len(points)), signs]
-        left = np.flatnonzero(np.isnan(chosen[:, 0]))
-        if len(left):
-            every = self._all(points[left], directions[left])
-            chosen[left] = every[np.arange(len(left)), signs[left]]
-        return chosen
-
-    def _all(self, points: Array, directions: Array) -> Array:
-        """All solutions, (n, 8, joints) by signs or (n, s, joints) without, in batches."""
-        batches, parts = list(chunks(max(len(points), 1), 3 + len(_AROUND))), []
-        for batch in batches:
-            starts = self._starts(points[batch], directions[batch])
-            parts.append(self._from(starts, points[batch], directions[batch]))
-        widest = max(part.shape[1] for part in parts)
-        found = np.full((len(points), widest, self.robot.joints), np.nan)
-        for batch, part in zip(batches, parts, strict=True):
-            found[batch, : part.shape[1]] = part
-        return found
-
-    def _starts(self, points: Array, directions: Array) -> Array:
+    def starts(self, points: Array, directions: Array) -> Array:
         """The ideal arm's solutions, both sides of folds, and what poses around have besides."""
         own = self.closed_form(points, directions)
-        starts = [both_sides_of_folds(self.robot, own)]
-        angle, distance = self.off
+        starts, (angle, distance) = [both_sides_of_folds(self.robot, own)], self.off
         for way in _AROUND:
             tilted = unit(directions + _FARTHER * angle * np.roll(way, 1))
             moved = self.closed_form(points + _FARTHER * distance * way, tilted)
@@ -235,33 +187,45 @@ class NearIdeal:
             starts.append(moved)
         return np.concatenate(starts, axis=1)
 
-    def _from(self, starts: Array, points: Array, directions: Array) -> Array:
-        """Solutions from starts (n, s, joints), under their names if there are any."""
-        solutions = polished(self.robot, starts, points, directions, _FARTHEST)
-        if self.signs is None:
-            return merged(solutions)
-        named, solved, slots, determinants = named_slots(self.robot, solutions, self.signs)
-        put_all(named, solved, slots, determinants)
-        return named.reshape(len(points), len(BRANCHES), self.robot.joints)
+    def named(self, solutions: Array, signs: Signs) -> Array:
+        """Solutions (n, s, joints) under their names (n, 8, joints), as many as there is room for.
+
+        Round an aligned wrist a pose can have two with the same signs, and more than eight in all.
+        The one with the larger determinant has the name. The other one takes that of the same
+        shoulder and the same sign of the determinant if it is free.
+        """
+        pose, number = np.nonzero(~np.isnan(solutions[:, :, 0]))
+        solved = solutions[pose, number]
+        sign, determinants = signs.branches(self.robot, solved)
+        slots = pose * len(BRANCHES) + sign
+        found = np.full((len(solutions) * len(BRANCHES), solutions.shape[2]), np.nan)
+        left = np.argsort(-determinants, kind="stable")
+        for flipped in (0, _ELBOW_AND_WRIST):
+            slot, first = np.unique(slots[left] ^ flipped, return_index=True)
+            free = np.isnan(found[slot, 0])
+            found[slot[free]] = solved[left[first[free]]]
+            there = found[slots[left], None]
+            left = left[nearest(solved[left, None], there)[:, 0] > SAME]
+        return found.reshape(len(solutions), len(BRANCHES), -1)
 
 
-def put_all(named: Array, solutions: Array, slots: Index, determinants: Array) -> None:
-    """Put solutions of a calibrated arm under their names, as many as there is room for.
+def both_sides_of_folds(robot: Robot, candidates: Array) -> Array:
+    """Candidates (k, s, joints), and two more beside each that is next to a singularity.
 
-    Round an aligned wrist a pose can have two with the same signs, and more than eight in all. The
-    one with the larger determinant has the name. The other one takes that of the same shoulder and
-    the same sign of the determinant if it is free.
+    There two solutions meet, and where the ideal arm just does not reach the true one may have
+    both. They lie on both sides, in the direction in which the task does not move.
 
-    Args:
-        named: (n * 8, joints) to be written to, NaN for none.
-        solutions: (k, joints) in rad, many of them equal.
-        slots: (k,) where the name of each would put it.
-        determinants: (k,) absolute.
+    Returns:
+        (k, 3 s, joints) in rad, NaN where there is none.
     """
-    left = np.argsort(-determinants, kind="stable")
-    for flipped in (0, _ELBOW_AND_WRIST):
-        slot, first = np.unique(slots[left] ^ flipped, return_index=True)
-        free = np.isnan(named[slot, 0])
-        named[slot[free]] = solutions[left[first[free]]]
-        there = named[slots[left], None]
-        left = left[nearest(solutions[left, None], there)[:, 0] > SAME]
+    shape = candidates.shape
+    flat = candidates.reshape(-1, shape[2])
+    beside = np.full((2, *flat.shape), np.nan)
+    there = np.flatnonzero(~np.isnan(flat[:, 0]))
+    rows, _ = task_jacobian(forward(robot, flat[there]))
+    _, sizes, turned = np.linalg.svd(rows)
+    folded = sizes[:, -1] < _FOLDED
+    for side, way in zip(beside, (_APART, -_APART), strict=True):
+        side[there[folded]] = flat[there[folded]]
+        side[there[folded], :TASK_JOINTS] += way * turned[folded, -1]
+    return np.concatenate([candidates, *beside.reshape(2, *shape)], axis=1)

@@ -18,6 +18,7 @@ Newton's method does the rest (:mod:`cellcolor.frontend.arm.calibrated`).
 from __future__ import annotations
 
 import os
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,11 +39,12 @@ from cellcolor.frontend.arm.inverse import (
     pose_at_zero,
 )
 from cellcolor.frontend.arm.kinematics import farthest_reach, frames_along, nearest_points
-from cellcolor.frontend.arm.newton import exact_solutions, followed_solutions
+from cellcolor.frontend.arm.newton import Polished
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import BRANCHES, signs_of
 from cellcolor.frontend.setup import RobotFiles
 
+_EXACT = 1e-4  # m, and for unit vectors; by how much one of EAIK's answers may miss
 _TOLERANCE = 1e-6  # m and rad; axes farther off are neither parallel nor do they meet
 
 
@@ -76,9 +78,10 @@ class EaikKinematics(InverseKinematics):
         self._tip = height * axes.directions[5]
         self._set_sizes(axes, poses.tip[0], files)
         tolerance = _TOLERANCE if off is None else 2 * CALIBRATION
-        self._signs = signs_of(robot, self.reach, tolerance)
-        self._near = None if off is None else NearIdeal(robot, self._closed_form, off, self._signs)
-        self.branches = () if self._signs is None else BRANCHES
+        signs = signs_of(robot, self.reach, tolerance)
+        solved = partial(NearIdeal, off=off) if off else partial(Polished, farthest=_EXACT)
+        self._solution = solved(robot=robot, closed_form=self._closed_form, signs=signs)
+        self.branches = () if signs is None else BRANCHES
 
     def _set_sizes(self, axes: Axes, tip: Array, files: RobotFiles) -> None:
         lines = list(zip(axes.points, axes.directions, strict=True))
@@ -100,18 +103,13 @@ class EaikKinematics(InverseKinematics):
         not exact. Its own mark of least-squares answers is not asked: of arms with a spherical
         wrist and no parallel axes it marks exact solutions as well.
         """
-        if self._near is not None:
-            return self._near.solve(points, directions, branches)
-        candidates = self._closed_form(points, directions)
-        asked = self._robot, candidates, points, directions
-        if branches is not None and self._signs is not None:
-            return followed_solutions(*asked, self._signs, branches)[:, None]
-        found = exact_solutions(*asked, self._signs)
-        return found if branches is None else found[np.arange(len(points)), branches][:, None]
+        return self._solution.solve(points, directions, branches)
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
         """How a calibrated arm is solved, and what is missing."""
-        return () if self._near is None else self._near.remarks(self.solve(points, directions))
+        if not isinstance(self._solution, NearIdeal):
+            return ()
+        return self._solution.remarks(self.solve(points, directions))
 
     def _closed_form(
         self,

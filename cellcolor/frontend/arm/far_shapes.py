@@ -11,48 +11,93 @@ import numpy as np
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.data.wording import looks_like_millimeters
-from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.body import Body
+from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.arm.robot import Robot
+
+_HUGE = 20.0  # times the arm's length; what stands before the first joint may be a hall's floor
+_STRAY = 0.5  # of the arm's length; no shape of a link is so far from all of its others
+
+
+_HUGE = 20.0  # times the arm; what stands before the first joint may be a hall's floor, no larger
+_STRAY = 0.5  # of the arm; so far from all others no shape of a link belongs there
 
 
 def notes_on_shapes(robot: Robot) -> tuple[str, ...]:
-    """A sentence on links that have shapes farther from their joint than the arm is long.
+    """Sentences on links whose shapes are elsewhere, or too large.
 
-    Another on those whose shapes are larger. The arm is as long as the way from axis to axis,
-    wherever on them the frames are. What stands before the first joint may be anything.
+    A shape may be as far from its joint as the arm is long, and half as far from the other shapes
+    of its link. What stands before the first joint may be anywhere.
     """
     poses = forward(robot, np.zeros((1, robot.joints)))
-    places = _on_axes(poses.origin[0, 1:], poses.axis[0], robot.slides, poses.tip[0])
-    length = float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
+    places, length = _axes_of(robot, poses)
+    turn, origin = poses.body_rotation[0], poses.body_origin[0]
+    middles = [origin[b.joint] + turn[b.joint] @ (b.start + b.end) / 2 for b in robot.bodies]
     far: dict[str, float] = {}
+    stray: dict[str, float] = {}
     large: dict[str, float] = {}
-    for body in robot.bodies:
-        if not 0 < body.joint <= robot.joints:
-            continue
-        turn, origin = poses.rotation[0, body.joint], poses.origin[0, body.joint]
-        middle = origin + turn @ (body.start + body.end) / 2
-        size = body.radius + body.length / 2
-        off = float(np.linalg.norm(places[body.joint - 1 : body.joint + 1] - middle, axis=1).min())
-        if size > length:
-            large[body.link] = max(2 * size, large.get(body.link, 0.0))
-        elif off - size > length:
-            far[body.link] = max(off - size, far.get(body.link, 0.0))
+    for body, middle in zip(robot.bodies, middles, strict=True):
+        size = _size(body)
+        if size > length * (1 if body.joint else _HUGE):
+            large[body.link] = max(size, large.get(body.link, 0.0))
+        elif 0 < body.joint <= robot.joints:
+            near = places[body.joint - 1 : body.joint + 1]
+            off = float(np.linalg.norm(near - middle, axis=1).min()) - size
+            gaps = [
+                float(np.linalg.norm(there - middle)) - size - _size(other)
+                for other, there in zip(robot.bodies, middles, strict=True)
+                if other.link == body.link and other is not body
+            ]
+            if off > length:
+                far[body.link] = max(off, far.get(body.link, 0.0))
+            elif gaps and min(gaps) > _STRAY * length:
+                stray[body.link] = min(gaps)
+    long = f"and the arm is {length:.3g} m long"
     notes = []
     if far:
         named = ", ".join(f"{link!r} are {off:.3g} m from its joint" for link, off in far.items())
         notes.append(
-            f"collision shapes of {named}, and the arm is {length:.3g} m long: their contacts with "
-            "the arm, the ground and the part mean nothing (a calibration that was not corrected "
-            "moves frames so)"
+            f"collision shapes of {named}, {long}: their contacts with the arm, the ground and the "
+            "part mean nothing (a calibration that was not corrected moves frames so)"
         )
+    notes += [
+        f"a collision shape of {link!r} is {off:.3g} m from the link's others, {long}: is its "
+        "origin right?"
+        for link, off in stray.items()
+    ]
     if large:
         link, size = next(iter(large.items()))
         more = f", and of {len(large) - 1} more links," if len(large) > 1 else ""
-        notes.append(
-            f"collision shapes of {link!r}{more} are up to {size:.3g} m large, and the arm is "
-            f"{length:.3g} m long: {looks_like_millimeters(size)}"
-        )
+        notes.append(f"collision shapes of {link!r}{more} are {_in_words(size, length)}")
     return tuple(notes)
+
+
+def too_large(robot: Robot, body: Body) -> str | None:
+    """Why a body that stands still cannot be meant to be so large; None if it can."""
+    _, length = _axes_of(robot, forward(robot, np.zeros((1, robot.joints))))
+    size = _size(body)
+    return f"is {_in_words(size, length)}" if size > _HUGE * length else None
+
+
+def _size(body: Body) -> float:
+    """Half of its length, m."""
+    return body.radius + body.length / 2
+
+
+def _in_words(size: float, length: float) -> str:
+    wide = float(f"{2 * size:.3g}")
+    return f"up to {wide:g} m large, and the arm is {length:.3g} m long: " + looks_like_millimeters(
+        wide
+    )
+
+
+def _axes_of(robot: Robot, poses: Poses) -> tuple[Array, float]:
+    """A point on each axis and the tip, and the arm's length: the way from axis to axis, m.
+
+    Wherever on the axes the frames are.
+    """
+    places = _on_axes(poses.origin[0, 1:], poses.axis[0], robot.slides, poses.tip[0])
+    return places, float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
 
 
 def _on_axes(origins: Array, axes: Array, slides: Mask, tip: Array) -> Array:

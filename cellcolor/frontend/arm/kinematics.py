@@ -98,20 +98,15 @@ def forward(robot: Robot, configurations: Array) -> Poses:
     tip = origin[:, -1] + turned(rotation[:, -1], robot.tip[:3, 3])
     tool_axis = turned(rotation[:, -1], robot.tip[:3, 2])
     for frame, follower in enumerate(robot.followers, robot.joints + 1):
-        # Out to the follower, moved by it, and back, in the frame that carries it.
-        turn, at = follower.placement[:3, :3], follower.placement[:3, 3]
-        along, position = turn @ follower.axis, follower.position(configurations)
+        carrier, fixed = all_rotations[:, follower.parent], follower.placement
+        moved, position = carrier @ fixed[:3, :3], follower.position(configurations)[:, None]
+        all_origins[:, frame] = all_origins[:, follower.parent] + carrier @ fixed[:3, 3]
+        all_rotations[:, frame] = moved
         if follower.slides:
-            own = np.broadcast_to(np.eye(3), (n, 3, 3))
-            shift = position[:, None] * along
+            all_origins[:, frame] += position * (moved @ follower.axis)
         else:
-            own = Rotation.from_rotvec(position[:, None] * along).as_matrix().reshape(n, 3, 3)
-            shift = at - own @ at
-        carrier = all_rotations[:, follower.parent]
-        all_rotations[:, frame] = carrier @ own
-        all_origins[:, frame] = all_origins[:, follower.parent] + np.einsum(
-            "nab,nb->na", carrier, shift
-        )
+            turn = Rotation.from_rotvec(position * follower.axis).as_matrix()
+            all_rotations[:, frame] = moved @ turn.reshape(n, 3, 3)
     return Poses(all_rotations, all_origins, axis, tip, tool_axis, robot.slides)
 
 

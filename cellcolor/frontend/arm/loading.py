@@ -2,26 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
 
 from cellcolor.arrays import Array, Mask
-from cellcolor.errors import InputError, naming
-from cellcolor.frontend.arm.assembly import Vector, fix_joints, mount, pinocchio_text
+from cellcolor.errors import InputError
+from cellcolor.frontend.arm.assembly import (
+    Vector,
+    check_position,
+    mount,
+    pinocchio_models,
+    settled,
+    without,
+)
 from cellcolor.frontend.arm.body import Body, Shapes, place_shapes
 from cellcolor.frontend.arm.robot import FollowingFrame, Robot
 from cellcolor.frontend.arm.tool_sense import notes_on_tool
 from cellcolor.frontend.arm.urdf import (
-    CONTINUOUS,
     PRISMATIC,
     Follower,
     Urdf,
-    axis_of,
-    check_follower,
+    effort_fault,
+    inertial_fault,
+    limits_of,
     load_urdf,
 )
 
@@ -69,94 +77,89 @@ def load_robot(
     """
     arm, tool = (given if isinstance(given, Urdf) else load_urdf(given) for given in (arm, tool))
     positions = fixed_joints or {}
-    for name in positions:
-        if not any(name in tree.kinds or name in tree.followers for tree in (arm, tool)):
+    for name, position in positions.items():
+        tree = arm if name in arm.kinds else tool
+        if name not in tree.kinds:
             message = "no such joint in arm and tool, or a fixed one"
             raise InputError(None, f"robot.fixed_joints.{name}", message)
-    if positions:
-        arm, tool = fix_joints(arm, positions), fix_joints(tool, positions)
-    arm_file, tool_file = arm.file, tool.file
-    if tip_link != tool.root and tip_link not in tool.parent:
-        raise InputError(str(tool_file), f"link[{tip_link}]", "the tip link is not in the tool")
+        if name not in tree.followers:
+            check_position(tree, name, position)
+    if tip_link not in tool.links:
+        raise InputError(str(tool.file), f"link[{tip_link}]", "the tip link is not in the tool")
     whole = mount(arm, flange_link, tool, *mounted)
-    try:
-        moving, standing = whole.settled_followers()
-    except InputError as error:
-        raise _in_its_file(error, arm, tool) from error
-    whole = fix_joints(whole, standing)
-    _check_chain(whole, arm, tool, tip_link, (joints - prismatic, prismatic))
-    if force and whole.weightless:
-        fault = whole.weightless[0]
-        message = f"{fault.message} ({_NO_FORCE})"
-        raise _in_its_file(InputError(None, fault.field, message), arm, tool)
-    if force:
-        _check_weight(whole, moving, arm, tool)
-    text = pinocchio_text(whole)
-    try:
-        model = pin.buildModelFromXML(text)
-        geometry = pin.buildGeomFromUrdfString(model, text, pin.GeometryType.COLLISION)
-    except (ValueError, RuntimeError) as error:
-        raise InputError(str(arm_file), "robot", f"Pinocchio refuses it: {error}") from error
-    bodies, stand_ins = place_shapes((arm, tool), whole, model, geometry, shapes or Shapes())
-    limits = model.lowerPositionLimit, model.upperPositionLimit
-    try:
-        frames = following_frames(whole, moving, model)
-        lower, upper = within_limits(whole, moving, frames, *limits)
-    except InputError as error:
-        raise _in_its_file(error, arm, tool) from error
-    # Bodies behind a follower hang on its frame; where they are at zero stays the same.
-    number = {frame.link: joints + 1 + index for index, frame in enumerate(frames)}
-    bodies = tuple(
-        replace(body, joint=_carrier(whole, body.link, number, body.joint)) for body in bodies
+    with _naming_file(arm, tool):
+        standing, moving = settled(whole, positions)
+        _check_chain(whole, standing, tool, tip_link, (joints - prismatic, prismatic))
+        for fault in weight_faults(whole, standing) if force else ():
+            raise InputError(None, fault.field, f"{fault.message} ({_NO_FORCE})")
+        all_joints, all_shapes = pinocchio_models(whole, standing)
+        model, geometry = without(all_joints, all_shapes, dict.fromkeys(moving, 0.0))
+        followers, frames = _following(whole, moving, all_joints, model, force)
+        lower, upper = _limits(whole, moving, model)
+    bodies, stand_ins = place_shapes(
+        (arm, tool), whole, all_joints, all_shapes, frames, shapes or Shapes()
     )
     tip = model.frames[model.getFrameId(tip_link, pin.FrameType.BODY)]
     axes = _axes(model)
     names = tuple(model.names[1:])
     slides = np.array([whole.kinds[name] == PRISMATIC for name in names], dtype=bool)
-    endless = np.array([whole.kinds[name] == CONTINUOUS for name in names], dtype=bool)
     return Robot(
-        files=(arm_file, tool_file),
-        placement=np.array([model.jointPlacements[i].homogeneous for i in range(1, joints + 1)]),
+        files=(arm.file, tool.file),
+        placement=np.array([each.homogeneous for each in list(model.jointPlacements)[1:]]),
         axis=axes,
         slides=slides,
-        lower=np.where(endless & (lower <= limits[0]), -np.inf, lower),
-        upper=np.where(endless & (upper >= limits[1]), np.inf, upper),
+        lower=lower,
+        upper=upper,
         velocity=_where_given(model.velocityLimit),
         effort=_where_given(model.effortLimit),
-        mass=np.array([model.inertias[i].mass for i in range(1, joints + 1)]),
-        center=np.array([model.inertias[i].lever for i in range(1, joints + 1)]),
+        mass=np.array([each.mass for each in list(model.inertias)[1:]]),
+        center=np.array([each.lever for each in list(model.inertias)[1:]]),
         tip=np.array(tip.placement.homogeneous),
         bodies=bodies,
         tested_pairs=_tested_pairs(whole, bodies, may_touch),
         joint_names=names,
-        warnings=_warnings(whole)
+        warnings=_warnings(whole, standing)
         + _in_degrees(names, slides, model.velocityLimit)
         + notes_on_tool(model, tool.root, tip_link, axes),
         model=model,
         geometry=geometry,
         stand_ins=stand_ins,
-        followers=frames,
+        followers=followers,
         tool_links=frozenset(tool.shapes),
     )
 
 
+@contextmanager
+def _naming_file(arm: Urdf, tool: Urdf) -> Iterator[None]:
+    """Give errors about a joint or link of arm and tool as one tree the file that has it."""
+    try:
+        yield
+    except InputError as error:
+        if error.file is not None:
+            raise
+        places = [f"joint[{name}]" for name in tool.joints] + [f"link[{n}]" for n in tool.links]
+        of_tool = (error.field or "").startswith(tuple(places))
+        raise error.in_file(str((tool if of_tool else arm).file)) from error
+
+
 def _check_chain(
-    whole: Urdf, arm: Urdf, tool: Urdf, tip_link: str, wanted: tuple[int, int]
+    whole: Urdf, standing: Mapping[str, float], tool: Urdf, tip_link: str, wanted: tuple[int, int]
 ) -> None:
     """Require these numbers of turning and prismatic joints from base to tip, none elsewhere."""
     in_chain = [whole.joint_above[link] for link in whole.chain(tip_link)[1:]]
 
     def refuse(name: str, key: str, message: str) -> InputError:
-        return _in_its_file(InputError(None, f"joint[{name}]{key}", message), arm, tool)
+        return InputError(None, f"joint[{name}]{key}", message)
 
     for name in in_chain:
-        if name in whole.locked:
+        if name in whole.followers and name not in standing:
             message = (
                 f"a joint between base and tip may not follow another one (here "
                 f"{whole.followers[name].leader!r}): no family of arms solves that"
             )
             raise refuse(name, ".mimic", message)
-    for name, kind in whole.kinds.items():
+    kinds = {name: kind for name, kind in whole.leading.items() if name not in standing}
+    for name, kind in kinds.items():
         if name in tool.kinds:
             raise refuse(name, "", f"a tool may not move: {_FIX.format(name)}")
         if name not in in_chain:
@@ -167,35 +170,13 @@ def _check_chain(
                 f"{_FIX.format(name)}, or name one whose arms have such a joint, as 'scara'"
             )
             raise refuse(name, ".type", message)
-    sliding = sum(kind == PRISMATIC for kind in whole.kinds.values())
-    found = len(whole.kinds) - sliding, sliding
+    sliding = sum(kind == PRISMATIC for kind in kinds.values())
+    found = len(kinds) - sliding, sliding
     if found != wanted:
         having = _counted(found) if max(wanted[1], sliding) else str(found[0])
         message = f"needs {_counted(wanted)} in a row to the tip, has {having}"
         way_out = _WAY_OUT if sum(found) > sum(wanted) else ""
-        raise InputError(str(arm.file), "robot", message + way_out)
-
-
-def _in_its_file(error: InputError, arm: Urdf, tool: Urdf) -> InputError:
-    """An error about a joint or link of arm and tool as one tree, with the file that has it."""
-    places = [f"joint[{name}]" for name in tool.joint_above.values()]
-    places += [f"link[{name}]" for name in (tool.root, *tool.parent)]
-    of_tool = (error.field or "").startswith(tuple(places))
-    return InputError(str((tool if of_tool else arm).file), error.field, error.message)
-
-
-def _check_weight(whole: Urdf, moving: Mapping[str, Follower], arm: Urdf, tool: Urdf) -> None:
-    """Refuse followers with a mass: the force constraint has it where they are at zero."""
-    heavy = {
-        link.get("name", "")
-        for link in whole.xml.findall("link")
-        if link.find("inertial") is not None
-    }
-    for link in whole.parent:
-        above = [whole.joint_above[each] for each in whole.chain(link)[1:]]
-        for name in [each for each in above if each in moving and link in heavy]:
-            message = f"the weight of what follows another joint is not known to move ({_NO_FORCE})"
-            raise _in_its_file(InputError(None, f"joint[{name}].mimic", message), arm, tool)
+        raise InputError(None, "robot", message + way_out)
 
 
 def _counted(joints: tuple[int, int]) -> str:
@@ -204,17 +185,109 @@ def _counted(joints: tuple[int, int]) -> str:
     return f"{turning} revolute joints" + (f" and {sliding} prismatic" if sliding else "")
 
 
+def weight_faults(urdf: Urdf, standing: Mapping[str, float]) -> list[InputError]:
+    """What keeps the force constraint from being tested; what nothing moves may weigh anything.
+
+    Args:
+        standing: joints that stand still.
+    """
+    moving = [name for name in urdf.leading if name not in standing]
+    driven = {link for link, name in urdf.joint_above.items() if name in moving}
+    faults = [effort_fault(urdf.joints[name]) for name in moving]
+    faults += [
+        inertial_fault(link)
+        for name, link in urdf.links.items()
+        if name in driven or (name in urdf.shapes and not driven.isdisjoint(urdf.chain(name)))
+    ]
+    return [fault for fault in faults if fault is not None]
+
+
+def _following(
+    urdf: Urdf, moving: Mapping[str, Follower], whole: pin.Model, chain: pin.Model, force: bool
+) -> tuple[tuple[FollowingFrame, ...], list[int]]:
+    """The frames of the followers that move, and the number of each joint's frame.
+
+    Args:
+        urdf, moving: arm and tool as one tree, and those followers.
+        whole: with their joints.
+        chain: without them.
+        force: whether weights count; that of a follower is not known to move.
+    """
+    names, leaders = list(whole.names), list(chain.names)
+    behind = [name for name in names if name in moving]
+    frames = [[*leaders, *behind].index(name) for name in names]
+    axes, found = _axes(whole), []
+    for name in behind:
+        own, joint = moving[name], whole.getJointId(name)
+        if force and whole.inertias[joint].mass > 0:
+            message = f"the weight of what follows another joint is not known to move ({_NO_FORCE})"
+            raise InputError(None, f"joint[{name}].mimic", message)
+        found.append(
+            FollowingFrame(
+                parent=frames[whole.parents[joint]],
+                placement=np.array(whole.jointPlacements[joint].homogeneous),
+                axis=axes[joint - 1],
+                slides=urdf.kinds[name] == PRISMATIC,
+                leader=leaders.index(own.leader) - 1,
+                multiplier=own.multiplier,
+                offset=own.offset,
+            )
+        )
+    return tuple(found), frames
+
+
+def _limits(whole: Urdf, moving: Mapping[str, Follower], chain: pin.Model) -> tuple[Array, Array]:
+    """Limits (joints,) of the chain in which its followers are inside of theirs as well.
+
+    Raises:
+        InputError: there is no position of a leader where its follower is inside, or the leader can
+            turn by more than a circle and the follower is elsewhere after a full one.
+    """
+    names = list(chain.names)[1:]
+    lower, upper = np.array([limits_of(whole.joints[name]) for name in names]).reshape(-1, 2).T
+    for name, own in moving.items():
+        at = names.index(own.leader)
+        ends = ((end - own.offset) / own.multiplier for end in limits_of(whole.joints[name]))
+        low, high = sorted(ends)
+        lower[at], upper[at] = max(lower[at], low), min(upper[at], high)
+        if lower[at] >= upper[at]:
+            message = "is inside its limits nowhere between those of the joint that it follows"
+            raise InputError(None, f"joint[{name}].mimic", message)
+    for name, own in moving.items():
+        at = names.index(own.leader)
+        turns_with = whole.kinds[name] != PRISMATIC and own.multiplier == round(own.multiplier)
+        full = upper[at] - lower[at] > 2 * np.pi + 1e-9
+        if whole.kinds[own.leader] != PRISMATIC and full and not turns_with:
+            message = (
+                f"{own.leader!r} turns by more than a circle, and this joint is elsewhere then: "
+                "give one of them narrower limits"
+            )
+            raise InputError(None, f"joint[{name}].mimic", message)
+    return lower, upper
+
+
+def _is_thing(link: ET.Element) -> bool:
+    """Whether a link is more than a frame."""
+    return any(link.find(tag) is not None for tag in ("inertial", "visual"))
+
+
 def _where_given(limits: Array) -> Array:
     """Limits (joints,), NaN where the file has none; vendors write 0 as well."""
     return np.where(limits > 0, limits, np.nan)
 
 
-def _warnings(urdf: Urdf) -> tuple[str, ...]:
-    """What a user would want to know of the files."""
-    if not urdf.shapes:
+def _warnings(whole: Urdf, standing: Mapping[str, float]) -> tuple[str, ...]:
+    """What a user would want to know of the files: links without shapes that are things."""
+    if not whole.shapes:
         return ("arm and tool have no collision shapes at all: nothing is ever hit",)
-    if urdf.shapeless:
-        return (f"no collision shape, so hits nothing: {', '.join(map(repr, urdf.shapeless))}",)
+    moving = whole.leading.keys() - standing
+    bare = [
+        name
+        for name, link in whole.links.items()
+        if name not in whole.shapes and (whole.joint_above.get(name) in moving or _is_thing(link))
+    ]
+    if bare:
+        return (f"no collision shape, so hits nothing: {', '.join(map(repr, bare))}",)
     return ()
 
 
@@ -270,93 +343,3 @@ def _tested_pairs(
         and solid_above[first.link] != second.link
         and solid_above[second.link] != first.link
     )
-
-
-def following_frames(
-    urdf: Urdf, moving: Mapping[str, Follower], model: pin.Model
-) -> tuple[FollowingFrame, ...]:
-    """The frames of all followers that move, each behind the frame that carries it.
-
-    Args:
-        urdf: arm and tool as one tree, where followers are fixed at zero.
-        moving: those of them that move.
-        model: Pinocchio's reading of the tree.
-
-    Raises:
-        InputError: one has no usable axis or limits.
-    """
-    names = list(model.names[1:])
-    joints = {joint.get("name", ""): joint for joint in urdf.xml.findall("joint")}
-    below = {name: link for link, name in urdf.joint_above.items()}
-    number: dict[str, int] = {}
-    found: list[FollowingFrame] = []
-    for name in sorted(moving, key=lambda name: len(urdf.chain(below[name]))):
-        own, link = moving[name], below[name]
-        with naming(urdf.file):
-            check_follower(name, joints[name], own.kind)
-        frame = model.frames[model.getFrameId(name, pin.FrameType.FIXED_JOINT)]
-        parent = _carrier(urdf, urdf.parent[link], number, int(frame.parentJoint))
-        number[link] = model.njoints + len(found)
-        found.append(
-            FollowingFrame(
-                link=link,
-                parent=parent,
-                placement=np.array(frame.placement.homogeneous),
-                axis=np.array([float(part) for part in axis_of(joints[name]).split()]),
-                slides=own.kind == PRISMATIC,
-                leader=names.index(own.leader),
-                multiplier=own.multiplier,
-                offset=own.offset,
-            )
-        )
-    return tuple(found)
-
-
-def _carrier(urdf: Urdf, link: str, number: Mapping[str, int], joint: int) -> int:
-    """The frame of the last follower between a link and its moving joint, or of that joint."""
-    for each in reversed(urdf.chain(link)):
-        if each in number:
-            return number[each]
-        if urdf.joint_above.get(each) in urdf.kinds:
-            break
-    return joint
-
-
-def within_limits(
-    urdf: Urdf,
-    moving: Mapping[str, Follower],
-    frames: tuple[FollowingFrame, ...],
-    lower: Array,
-    upper: Array,
-) -> tuple[Array, Array]:
-    """Limits (joints,) of the chain in which its followers are inside of theirs as well.
-
-    Raises:
-        InputError: there is no position of a leader where its follower is inside, or the leader can
-            turn by more than a circle and the follower is elsewhere after a full one.
-    """
-    lower, upper = lower.copy(), upper.copy()
-    joints = {joint.get("name", ""): joint for joint in urdf.xml.findall("joint")}
-    for frame in frames:
-        name = urdf.joint_above[frame.link]
-        limit = joints[name].find("limit")
-        at, field = frame.leader, f"joint[{name}].mimic"
-        if limit is not None and moving[name].kind != CONTINUOUS:
-            ends = [float(limit.get(end, "nan")) for end in ("lower", "upper")]
-            low, high = sorted((end - frame.offset) / frame.multiplier for end in ends)
-            lower[at], upper[at] = max(lower[at], low), min(upper[at], high)
-        if lower[at] >= upper[at]:
-            message = "is inside its limits nowhere between those of the joint that it follows"
-            raise InputError(str(urdf.file), field, message)
-    for frame in frames:
-        name = urdf.joint_above[frame.link]
-        leader = moving[name].leader
-        turns_with = not frame.slides and frame.multiplier == round(frame.multiplier)
-        full = upper[frame.leader] - lower[frame.leader] > 2 * np.pi + 1e-9
-        if urdf.kinds[leader] != PRISMATIC and full and not turns_with:
-            message = (
-                f"{leader!r} turns by more than a circle, and this joint is elsewhere then: give "
-                "one of them narrower limits"
-            )
-            raise InputError(str(urdf.file), f"joint[{name}].mimic", message)
-    return lower, upper

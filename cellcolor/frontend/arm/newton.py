@@ -7,6 +7,9 @@ geometry; from there a few steps lead to the true one.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,8 +29,6 @@ _STEPS = 25
 _GOOD = 1e-12  # m and rad; nothing is gained from there on
 _LARGEST = 0.3  # rad; no step moves a joint farther
 SAME = 1e-6  # rad; two solutions nearer than this are one
-_FOLDED = 0.05  # smallest singular value; below it two solutions are about to meet
-_APART = 0.1  # rad, to both sides of there
 
 
 def misses(poses: Poses, points: Array, directions: Array) -> Array:
@@ -104,28 +105,6 @@ def _step(poses: Poses, points: Array, directions: Array, task: TaskSpace) -> Ar
     return np.asarray(step * np.minimum(1.0, _LARGEST / np.maximum(longest, _LARGEST)))
 
 
-def both_sides_of_folds(robot: Robot, candidates: Array) -> Array:
-    """Candidates (k, s, joints), and two more beside each that is next to a singularity.
-
-    There two solutions meet, and where the ideal arm just does not reach the true one may have
-    both. They lie on both sides, in the direction in which the task does not move.
-
-    Returns:
-        (k, 3 s, joints) in rad, NaN where there is none.
-    """
-    shape = candidates.shape
-    flat = candidates.reshape(-1, shape[2])
-    beside = np.full((2, *flat.shape), np.nan)
-    there = np.flatnonzero(~np.isnan(flat[:, 0]))
-    rows, _ = task_jacobian(forward(robot, flat[there]))
-    _, sizes, turned = np.linalg.svd(rows)
-    folded = sizes[:, -1] < _FOLDED
-    for side, way in zip(beside, (_APART, -_APART), strict=True):
-        side[there[folded]] = flat[there[folded]]
-        side[there[folded], :TASK_JOINTS] += way * turned[folded, -1]
-    return np.concatenate([candidates, *beside.reshape(2, *shape)], axis=1)
-
-
 def nearest(solutions: Array, others: Array) -> Array:
     """How far each of some solutions (n, s, joints) is from the nearest of others (n, t, joints).
 
@@ -172,69 +151,85 @@ def _packed(solutions: Array, kept: Mask) -> Array:
     return np.asarray(packed)
 
 
-_EXACT = 1e-4  # m, and for unit vectors; by how much a closed form's candidate may miss
+@dataclass(frozen=True, kw_only=True)
+class Polished:
+    """All solutions of an arm, from candidates that are next to them.
 
-
-def exact_solutions(
-    robot: Robot, candidates: Array, points: Array, directions: Array, signs: Signs | None
-) -> Array:
-    """Solutions of an arm whose closed form is its own.
-
-    Args:
-        candidates: (n, s, joints) in rad, NaN where there is none.
-        points: (n, 3) where the tip has to be, m.
-        directions: (n, 3) unit vectors of the tool.
-        signs: what names them.
-
-    Returns:
-        (n, 8, joints) by branch, or (n, s, joints) without signs, each solution once.
+    Attributes:
+        robot: the arm as its URDF has it.
+        closed_form: points (k, 3) in m and unit vectors (k, 3) to candidates (k, s, joints) in rad,
+            NaN where there is none. Given ``branches`` (k,) it may leave out all others.
+        farthest: by how much a candidate may miss, m, and for unit vectors.
+        signs: what names the solutions; None if they have no names.
+        sign_of: (8,) the index that the signs have for each branch.
+        at_a_time: how many configurations a pose takes while it is solved.
     """
-    solutions = polished(robot, candidates, points, directions, _EXACT)
-    if signs is None:
-        return merged(solutions)
-    named, solved, slots, _ = named_slots(robot, solutions, signs)
-    # The first of those with one name: of a pair that meets the signs are chance.
-    named[slots[::-1]] = solved[::-1]
-    return named.reshape(len(points), len(BRANCHES), robot.joints)
+
+    robot: Robot
+    closed_form: Callable[..., Array]
+    farthest: float
+    signs: Signs | None = None
+    sign_of: Index = field(default_factory=lambda: np.arange(len(BRANCHES)))
+    at_a_time: int = 16
+
+    def solve(self, points: Array, directions: Array, branches: Index | None = None) -> Array:
+        """See :meth:`cellcolor.frontend.arm.inverse.InverseKinematics.solve`."""
+        if branches is not None and self.signs is not None:
+            return self._one_each(points, directions, self.sign_of[branches], branches)[:, None]
+        found = self._every(points, directions)
+        return found if self.signs is None else found[:, self.sign_of]
+
+    def starts(self, points: Array, directions: Array) -> Array:
+        """Configurations (n, s, joints) in rad that lead to all solutions, NaN for none."""
+        return self.closed_form(points, directions)
+
+    def named(self, solutions: Array, signs: Signs) -> Array:
+        """Solutions (n, s, joints) under their names (n, 8, joints), the first with each."""
+        pose, number = np.nonzero(~np.isnan(solutions[:, :, 0]))
+        solved = solutions[pose, number]
+        slots = pose * len(BRANCHES) + signs.branches(self.robot, solved)[0]
+        found = np.full((len(solutions) * len(BRANCHES), solutions.shape[2]), np.nan)
+        found[slots[::-1]] = solved[::-1]
+        return found.reshape(len(solutions), len(BRANCHES), -1)
+
+    def _every(self, points: Array, directions: Array) -> Array:
+        """All solutions, (n, 8, joints) by signs or (n, s, joints) without."""
+        parts = [np.empty((0, len(BRANCHES) if self.signs else 0, self.robot.joints))]
+        for rows in chunks(len(points), self.at_a_time):
+            asked = points[rows], directions[rows]
+            found = polished(self.robot, self.starts(*asked), *asked, self.farthest)
+            parts.append(merged(found) if self.signs is None else self.named(found, self.signs))
+        return stacked(parts)
+
+    def _one_each(self, points: Array, directions: Array, signs: Index, branches: Index) -> Array:
+        """The solution (n, joints) of one branch of each pose; the others are not polished.
+
+        Only where the signs of a candidate are not those of its solution, or none has the branch's,
+        are all solutions found.
+        """
+        assert self.signs is not None
+        candidates = self.closed_form(points, directions, branches=branches)
+        pose, number = np.nonzero(~np.isnan(candidates[:, :, 0]))
+        own = self.signs.branches(self.robot, candidates[pose, number])[0] == signs[pose]
+        rows, first = np.unique(pose[own], return_index=True)
+        starts = candidates[rows, number[own][first]][:, None]
+        ends = polished(self.robot, starts, points[rows], directions[rows], self.farthest)[:, 0]
+        known = np.flatnonzero(~np.isnan(ends[:, 0]))
+        known = known[self.signs.branches(self.robot, ends[known])[0] == signs[rows[known]]]
+        found = np.empty((len(points), self.robot.joints))
+        found[rows[known]] = ends[known]
+        left = np.setdiff1d(np.arange(len(points)), rows[known])
+        if len(left):
+            every = self._every(points[left], directions[left])
+            found[left] = every[np.arange(len(left)), signs[left]]
+        return found
 
 
-def followed_solutions(
-    robot: Robot,
-    candidates: Array,
-    points: Array,
-    directions: Array,
-    signs: Signs,
-    branches: NDArray[np.intp],
-) -> Array:
-    """The solution (n, joints) of one branch (n,) a pose; the others are not polished.
-
-    Only where the signs of a candidate are not those of its solution, or none has the branch's, are
-    all solutions found. See :func:`exact_solutions`.
-    """
-    pose, number = np.nonzero(~np.isnan(candidates[:, :, 0]))
-    own = signs.branches(robot, candidates[pose, number])[0] == branches[pose]
-    rows, first = np.unique(pose[own], return_index=True)
-    starts = candidates[rows, number[own][first]][:, None]
-    ends = polished(robot, starts, points[rows], directions[rows], _EXACT)[:, 0]
-    known = np.flatnonzero(~np.isnan(ends[:, 0]))
-    known = known[signs.branches(robot, ends[known])[0] == branches[rows[known]]]
-    found = np.empty((len(points), robot.joints))
-    found[rows[known]] = ends[known]
-    left = np.setdiff1d(np.arange(len(points)), rows[known])
-    every = exact_solutions(robot, candidates[left], points[left], directions[left], signs)
-    found[left] = every[np.arange(len(left)), branches[left]]
-    return found
-
-
-def named_slots(robot: Robot, solutions: Array, signs: Signs) -> tuple[Array, Array, Index, Array]:
-    """Room for the solutions (n, s, joints) by name, and where each of them belongs.
-
-    Returns:
-        An empty table (n * 8, joints), and of each solution that there is, pose by pose, the angles
-        (k, joints), the row of the table that its signs lead to, and its determinant.
-    """
-    pose, number = np.nonzero(~np.isnan(solutions[:, :, 0]))
-    solved = solutions[pose, number]
-    sign, determinants = signs.branches(robot, solved)
-    empty = np.full((len(solutions) * len(BRANCHES), solutions.shape[2]), np.nan)
-    return empty, solved, pose * len(BRANCHES) + sign, determinants
+def stacked(parts: Sequence[Array]) -> Array:
+    """Solutions (k, s, joints) of parts of the poses, one part after the other, NaN for none."""
+    most = max(part.shape[1] for part in parts)
+    widened = [
+        np.pad(part, ((0, 0), (0, most - part.shape[1]), (0, 0)), constant_values=np.nan)
+        for part in parts
+    ]
+    return np.concatenate(widened)

@@ -45,17 +45,17 @@ from cellcolor.frontend.arm.kinematics import (
     one_across,
     turned_about,
 )
-from cellcolor.frontend.arm.newton import merged, polished
+from cellcolor.frontend.arm.newton import Polished
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.setup import RobotFiles
-from cellcolor.memory import chunks
 
 _TOLERANCE = 1e-3  # m and rad; vendors write 1.5708 for a right angle
 _LEAST = 1e-6  # m; of a length, and of a sine
 _ANGLES = 64  # at which the equation is evaluated
 _PARTS = 16  # of the way between two of them where the equation changes fast or comes near zero
 _HALVINGS = 24  # to where a way ends
-_ROUNDS = 6  # of the method of the false position
+_ROUNDS = 6  # of the method of the false position, before halving
+_CLOSE = 1e-3  # so near to zero the equation is left to Newton's method
 _ALMOST = 4.0  # times the step of the angles: less than the equation may change in between
 _FARTHEST = 0.5  # m, and for unit vectors; by how much a start may miss the pose
 
@@ -115,17 +115,9 @@ class OffsetWrist(InverseKinematics):
         directions: Array,
         branches: NDArray[np.intp] | None = None,  # noqa: ARG002
     ) -> Array:
-        parts = [np.empty((0, 0, 6))]
-        batches = list(chunks(len(points), _ANGLES))
-        for rows in batches:
-            starts = self._starts(points[rows], directions[rows])
-            found = polished(self._robot, starts, points[rows], directions[rows], _FARTHEST)
-            parts.append(merged(found))
-        most = max(part.shape[1] for part in parts)
-        every = np.full((len(points), most, 6), np.nan)
-        for rows, part in zip(batches, parts[1:], strict=True):
-            every[rows, : part.shape[1]] = part
-        return every
+        arm, starts = self._robot, self._starts
+        polished = Polished(robot=arm, closed_form=starts, farthest=_FARTHEST, at_a_time=_ANGLES)
+        return polished.solve(points, directions)
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
         """How many solutions are missing at least."""
@@ -268,8 +260,13 @@ class _Search:
         inner = size[:, 1:-1]
         back = (inner <= size[:, 2:]) & (inner <= size[:, :-2]) & (inner < _ALMOST * step)
         row, number, way = np.nonzero(back)
-        for aside in (-step / 2, step / 2):
-            self._near.append((at[row], way, first[row] + step * (number + 1) + aside))
+        center, here = first[row] + step * (number + 1), off[row, number + 1, way]
+        for side in (-1, 1):
+            middle, there = center + side * step / 2, off[row, number + 1 + side, way]
+            value = self._way(at[row], way, middle)
+            self._near.append((at[row], way, middle))
+            self._brackets.append((at[row], way, center, middle, here, value))
+            self._brackets.append((at[row], way, middle, center + side * step, value, there))
 
     def found(self) -> _Columns:
         """Pose, way and turn in rad, (s,) each, at or next to zeros."""
@@ -277,16 +274,22 @@ class _Search:
         changes = every[4] * every[5] <= 0
         at, way, low, high, at_low, at_high = (each[changes] for each in every)
         turn = (low + high) / 2
-        # The method of the false position, the end that stays counting half (Illinois).
-        for _ in range(_ROUNDS):
+        rows = np.arange(len(turn))
+        # The method of the false position, the end that stays counting half (Illinois); halving
+        # where joints turn so fast that the equation jumps.
+        for step in range(_ROUNDS + _HALVINGS):
+            a, b, left, right = low[rows], high[rows], at_low[rows], at_high[rows]
             with np.errstate(divide="ignore", invalid="ignore"):
-                turn = (low * at_high - high * at_low) / (at_high - at_low)
-            turn = np.where(np.isnan(turn), (low + high) / 2, turn)
-            value = self._way(at, way, turn)
-            left = value * at_low > 0
-            at_high = np.where(left, at_high / 2, value)
-            at_low = np.where(left, value, at_low / 2)
-            low, high = np.where(left, turn, low), np.where(left, high, turn)
+                between = (a * right - b * left) / (right - left)
+            halved = np.isnan(between) | (step >= _ROUNDS)
+            turn[rows] = between = np.where(halved, (a + b) / 2, between)
+            value = self._way(at[rows], way[rows], between)
+            same = value * left > 0
+            low[rows], high[rows] = np.where(same, between, a), np.where(same, b, between)
+            at_low[rows] = np.where(same, value, left / 2)
+            at_high[rows] = np.where(same, right / 2, value)
+            if step >= _ROUNDS - 1:
+                rows = rows[np.abs(value) > _CLOSE]
         near = zip((at, way, turn), *self._near, strict=True)
         at, way, turn = (np.concatenate(each) for each in near)
         return at, way, turn

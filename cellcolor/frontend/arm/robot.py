@@ -68,22 +68,18 @@ GIVEN_IN_PLANE = TaskSpace(joints=3, turn=True, lengths=2, direction=False)
 
 @dataclass(frozen=True)
 class FollowingFrame:
-    """A frame that moves against another one as a joint does that follows one of the chain.
-
-    With the follower at zero both frames are the same.
+    """The frame behind a joint that follows one of the chain.
 
     Attributes:
-        link: the link behind the follower.
         parent: the frame that carries it: 0 is the world, then those behind the joints, then the
             followers in their order.
-        placement: (4, 4) pose of the follower in that frame.
+        placement: (4, 4) fixed pose of the follower in that frame.
         axis: (3,) its unit axis in its own frame.
         slides: whether it is prismatic; otherwise it turns.
         leader: the joint of the chain that it follows, 0 the first.
         multiplier, offset: its position is ``multiplier`` times the leader's plus ``offset``.
     """
 
-    link: str
     parent: int
     placement: Array
     axis: Array

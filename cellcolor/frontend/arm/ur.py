@@ -319,7 +319,8 @@ def _near_ideal(robot: Robot, geometry: UrGeometry, locked: float) -> NearIdeal:
     signs = signs_of(robot, geometry.arm_reach, 2 * CALIBRATION)
     assert signs is not None  # a UR-type arm has them
     closed_form = partial(solve_inverse, geometry, locked_angle=locked, slack=_SLACK)
-    return NearIdeal(robot, closed_form, off, signs, _sign_of(robot, geometry, signs))
+    sign_of = _sign_of(robot, geometry, signs)
+    return NearIdeal(robot=robot, closed_form=closed_form, signs=signs, sign_of=sign_of, off=off)
 
 
 def _sign_of(robot: Robot, geometry: UrGeometry, signs: Signs) -> NDArray[np.intp]:

@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Collection
+from dataclasses import dataclass
 from pathlib import Path
 
 from cellcolor.data.wording import beyond_turns, looks_like_degrees, looks_like_millimeters
@@ -123,18 +123,13 @@ _LONGEST = 60.0  # m; of a rail
 _MOST_DEGREES = 3600  # of a joint's limit; beyond, as 999999, it means that there is none
 CONTINUOUS, PRISMATIC = "continuous", "prismatic"
 _MOVING = ("revolute", CONTINUOUS, PRISMATIC)
-_THING = ("inertial", "visual")  # what a link that is more than a frame has
 
 
 @dataclass(frozen=True)
 class Follower:
-    """A joint with ``<mimic>``: its position is ``multiplier`` times the leader's plus ``offset``.
-
-    In the XML it is a fixed joint, which stands at zero; ``kind`` is the type that it had.
-    """
+    """A joint with ``<mimic>``: at ``multiplier`` times the leader's position plus ``offset``."""
 
     leader: str
-    kind: str
     multiplier: float
     offset: float
 
@@ -146,58 +141,29 @@ class Urdf:
     Attributes:
         folder: what relative file names in it are relative to.
         root: the link that nothing carries.
+        links, joints: the elements by their names.
         parent: the link that carries each other link.
         joint_above: the name of the joint between a link and its parent.
-        kinds: the type of each joint that can move, in the order of the file.
+        kinds: the type of each joint that can move, followers included, in the order of the file.
         shapes: the collision shapes of each link that has any.
-        shapeless: the links without one that are things all the same: they have a mass or a
-            picture, or a joint moves them.
-        weightless: why the force constraint cannot be tested: what is wrong with the mass of
-            links that a joint moves, and with the effort of joints.
-        locked: joints that follow another one (``<mimic>``) and are not fixed with it; they are
-            written as fixed at zero.
-        followers: all joints that follow another one, fixed or not.
+        followers: the joints that follow another one.
     """
 
     file: Path
     folder: Path
-    xml: ET.Element
     root: str
+    links: dict[str, ET.Element]
+    joints: dict[str, ET.Element]
     parent: dict[str, str]
     joint_above: dict[str, str]
     kinds: dict[str, str]
     shapes: dict[str, tuple[LinkShape, ...]]
-    shapeless: tuple[str, ...]
-    weightless: tuple[InputError, ...]
-    locked: tuple[str, ...]
-    followers: Mapping[str, Follower]
+    followers: dict[str, Follower]
 
-    def settled_followers(self) -> tuple[dict[str, Follower], dict[str, float]]:
-        """Those of the ``locked`` joints that move, and the positions of the others.
-
-        What follows a follower is written as if it followed the first leader directly. One
-        whose leader is fixed stands where it is with the leader at zero.
-
-        Raises:
-            InputError: a joint follows one that is not there, or itself.
-        """
-        moving, standing = {}, {}
-        known = set(self.joint_above.values())
-        for name in self.locked:
-            leader, factor, offset, seen = name, 1.0, 0.0, {name}
-            while leader in self.locked:
-                own = self.followers[leader]
-                leader, offset = own.leader, offset + factor * own.offset
-                factor *= own.multiplier
-                if leader not in known or leader in seen:
-                    fault = "follows itself" if leader in seen else f"no joint {leader!r}"
-                    raise InputError(str(self.file), f"joint[{name}].mimic", fault)
-                seen.add(leader)
-            if leader in self.kinds and factor:
-                moving[name] = Follower(leader, self.followers[name].kind, factor, offset)
-            else:
-                standing[name] = offset
-        return moving, standing
+    @property
+    def leading(self) -> dict[str, str]:
+        """The types of the joints that can move and follow no other one."""
+        return {name: kind for name, kind in self.kinds.items() if name not in self.followers}
 
     def chain(self, link: str) -> tuple[str, ...]:
         """The links from the root to ``link``, both included."""
@@ -224,7 +190,8 @@ def parse_urdf(text: str, file: Path, folder: Path = Path()) -> Urdf:
         folder: what relative file names in it are relative to.
 
     Raises:
-        InputError: not XML, a xacro file, or what :func:`check_urdf` refuses.
+        InputError: not XML, a xacro file, not one tree, a joint that floats or has no usable
+            limits, a collision shape of an unknown kind, numbers that are not finite.
     """
     with naming(file):
         _refuse_xacro(text, file)
@@ -234,9 +201,36 @@ def parse_urdf(text: str, file: Path, folder: Path = Path()) -> Urdf:
             raise InputError(None, None, f"not XML: {error}") from error
         if xml.tag != "robot":
             raise InputError(None, xml.tag, "the outermost element of a URDF is <robot>")
-        followers = _followers(xml)
-        _soften(xml)
-    return check_urdf(file, folder, xml, tuple(followers), followers)
+        links, joints = _named(xml, "link"), _named(xml, "joint")
+        parent: dict[str, str] = {}
+        joint_above: dict[str, str] = {}
+        kinds: dict[str, str] = {}
+        followers: dict[str, Follower] = {}
+        for name, joint in joints.items():
+            above, below = (_end(name, joint, end, links) for end in ("parent", "child"))
+            if below in parent:
+                raise InputError(None, f"joint[{name}].child", f"{below!r} hangs on two joints")
+            parent[below], joint_above[below] = above, name
+            _check_origin(f"joint[{name}]", joint)
+            kind = _kind(name, joint)
+            if kind != "fixed":
+                kinds[name] = kind
+                if (mimic := joint.find("mimic")) is not None:
+                    followers[name] = _follower(f"joint[{name}].mimic", mimic)
+        roots = [link for link in links if link not in parent]
+        if len(roots) != 1:
+            raise InputError(None, "robot", f"needs one root link, has {len(roots)}: {roots}")
+        shapes = {
+            name: tuple(
+                _shape(f"link[{name}].collision[{number}]", collision)
+                for number, collision in enumerate(link.findall("collision"))
+            )
+            for name, link in links.items()
+            if link.find("collision") is not None
+        }
+    return Urdf(
+        file, folder, roots[0], links, joints, parent, joint_above, kinds, shapes, followers
+    )
 
 
 def _refuse_xacro(text: str, file: Path) -> None:
@@ -250,160 +244,66 @@ def _refuse_xacro(text: str, file: Path) -> None:
         raise InputError(None, "robot", message)
 
 
-def _followers(xml: ET.Element) -> dict[str, Follower]:
-    """Fix the joints that follow another one, and name them."""
-    found = {}
-    for joint in xml.findall("joint"):
-        mimic = joint.find("mimic")
-        if mimic is not None:
-            name = joint.get("name", "")
-            where = f"joint[{name}].mimic"
-            factor, offset = (
-                _finite(f"{where}.{attribute}", mimic.get(attribute, usual))
-                for attribute, usual in (("multiplier", "1"), ("offset", "0"))
-            )
-            kind = joint.get("type", "")
-            found[name] = Follower(mimic.get("joint", ""), kind, factor, offset)
-            joint.remove(mimic)
-            joint.set("type", "fixed")
-    return found
+def _end(name: str, joint: ET.Element, end: str, links: Collection[str]) -> str:
+    """The link at one end of a joint."""
+    element = joint.find(end)
+    link = None if element is None else element.get("link")
+    if link not in links:
+        raise InputError(None, f"joint[{name}].{end}", f"no link {link!r}")
+    return str(link)
 
 
-def _soften(xml: ET.Element) -> None:
-    """Narrow the limits of joints to their soft ones, beyond which a controller stops them.
-
-    Soft limits that are missing, or leave no range, are none: both are zero where nobody wrote any.
-    """
-    for joint in xml.findall("joint"):
-        soft, limit = joint.find("safety_controller"), joint.find("limit")
-        if soft is None or limit is None or joint.get("type") == CONTINUOUS:
-            continue
-        field = f"joint[{joint.get('name', '')}].safety_controller"
-        names = [f"soft_{end}_limit" for end in ("lower", "upper")]
-        given = [soft.get(name) for name in names]
-        if None in given:
-            continue
-        low, high = (_finite(f"{field}.{name}", soft.get(name, "")) for name in names)
-        if low < high:
-            for end, better, value in (("lower", max, low), ("upper", min, high)):
-                own = _number(f"joint[{joint.get('name', '')}].limit", limit, end)
-                limit.set(end, repr(better(own, value)))
+def _follower(field: str, mimic: ET.Element) -> Follower:
+    factor, offset = (
+        _finite(f"{field}.{key}", mimic.get(key, usual))
+        for key, usual in (("multiplier", "1"), ("offset", "0"))
+    )
+    return Follower(mimic.get("joint", ""), factor, offset)
 
 
-def check_urdf(
-    file: Path,
-    folder: Path,
-    xml: ET.Element,
-    locked: tuple[str, ...],
-    followers: Mapping[str, Follower],
-) -> Urdf:
-    """Check a tree; arguments as of :class:`Urdf`.
-
-    Raises:
-        InputError: not one tree, a joint that floats or has no usable limits, a collision shape of
-            an unknown kind, numbers that are not finite.
-    """
-    with naming(file):
-        links, joints = _named(xml, "link"), _named(xml, "joint")
-        parent, joint_above, kinds = _tree(links, joints)
-        roots = [link for link in links if link not in parent]
-        if len(roots) != 1:
-            raise InputError(None, "robot", f"needs one root link, has {len(roots)}: {roots}")
-        driven = {link for link, name in joint_above.items() if name in kinds}
-        shapes, shapeless = _shapes(links, driven)
-    tree = Urdf(
-        file, folder, xml, roots[0], parent, joint_above, kinds, shapes, shapeless, (), locked,
-        followers,
-    )  # fmt: skip
-    return replace(tree, weightless=tuple(_weightless(tree, links, joints, driven)))
-
-
-def _tree(
-    links: Mapping[str, ET.Element], joints: Mapping[str, ET.Element]
-) -> tuple[dict[str, str], dict[str, str], dict[str, str]]:
-    """The parent of each link, the joint between the two, and the kinds of joints that move."""
-    parent: dict[str, str] = {}
-    joint_above: dict[str, str] = {}
-    kinds: dict[str, str] = {}
-    for name, joint in joints.items():
-        ends = []
-        for end in ("parent", "child"):
-            element = joint.find(end)
-            link = None if element is None else element.get("link")
-            if link not in links:
-                raise InputError(None, f"joint[{name}].{end}", f"no link {link!r}")
-            ends.append(str(link))
-        above, below = ends
-        if below in parent:
-            raise InputError(None, f"joint[{name}].child", f"{below!r} hangs on two joints")
-        parent[below], joint_above[below] = above, name
-        _check_origin(f"joint[{name}]", joint)
-        kind = joint.get("type", "")
-        if kind in _MOVING:
-            if kind != CONTINUOUS:
-                kind = _limits(name, joint, kind)
-            _axis(name, joint)
-            kinds[name] = kind
-        elif kind != "fixed":
-            message = f"{kind!r}: only revolute, continuous, prismatic and fixed joints"
-            raise InputError(None, f"joint[{name}].type", message)
-    return parent, joint_above, kinds
-
-
-def _shapes(
-    links: Mapping[str, ET.Element], driven: Collection[str]
-) -> tuple[dict[str, tuple[LinkShape, ...]], tuple[str, ...]]:
-    """The collision shapes of links, and the links without any that are things all the same."""
-    shapes, shapeless = {}, []
-    for name, element in links.items():
-        own = tuple(
-            _shape(f"link[{name}].collision[{number}]", collision)
-            for number, collision in enumerate(element.findall("collision"))
-        )
-        if own:
-            shapes[name] = own
-        elif name in driven or any(element.find(tag) is not None for tag in _THING):
-            shapeless.append(name)
-    return shapes, tuple(shapeless)
-
-
-def check_follower(name: str, joint: ET.Element, kind: str) -> None:
-    """Hold a joint that moves with another one to what is asked of others; limits may be left out.
-
-    Raises:
-        InputError: it is of another kind, or has no usable axis or limits.
-    """
+def _kind(name: str, joint: ET.Element) -> str:
+    """The type of a joint whose axis and limits are good; continuous if these mean none."""
+    kind = joint.get("type", "")
+    if kind == "fixed":
+        return kind
     if kind not in _MOVING:
-        message = f"{kind!r}: only revolute, continuous and prismatic joints can follow another one"
+        message = f"{kind!r}: only revolute, continuous, prismatic and fixed joints"
         raise InputError(None, f"joint[{name}].type", message)
-    if kind != CONTINUOUS and joint.find("limit") is not None:
-        _limits(name, joint, kind)
-    _axis(name, joint)
+    field = f"joint[{name}].axis"
+    if abs(math.hypot(*_triple(field, axis_of(joint))) - 1) > 1e-6:
+        raise InputError(None, field, "must have length 1")
+    if joint.find("mimic") is not None:  # whose limits count where its leader moves
+        return kind
+    return CONTINUOUS if math.isinf(limits_of(joint)[0]) else kind
 
 
-def _weightless(
-    tree: Urdf, links: dict[str, ET.Element], joints: dict[str, ET.Element], driven: set[str]
-) -> Iterator[InputError]:
-    """What keeps the force constraint from being tested; what nothing moves may weigh anything."""
-    for name in tree.kinds:
-        fault = _effort(name, joints[name])
-        if fault is not None:
-            yield fault
-    for name, element in links.items():
-        carried = any(link in driven for link in tree.chain(name))
-        if carried and (name in tree.shapes or name in driven):
-            try:
-                _inertial(name, element)
-            except InputError as error:
-                yield error
+def axis_of(joint: ET.Element) -> str:
+    """The axis of a joint as its file has it, three numbers."""
+    axis = joint.find("axis")
+    return "1 0 0" if axis is None else axis.get("xyz", "1 0 0")
 
 
-def _limits(name: str, joint: ET.Element, kind: str) -> str:
-    """Check a joint's limits; its kind, which becomes continuous where they mean none."""
-    field = f"joint[{name}].limit"
-    limit = joint.find("limit")
-    lower = _number(field, limit, "lower")
-    upper = _number(field, limit, "upper")
+def limits_of(joint: ET.Element) -> tuple[float, float]:
+    """The limits of a joint that moves, in rad or m, infinite if it has none.
+
+    They are its soft ones where it has some, beyond which a controller stops it. Soft limits that
+    leave no range are none: both are zero where nobody wrote any. Only a follower may have none.
+
+    Raises:
+        InputError: one is missing, they are no range, or in another unit.
+    """
+    kind, given = joint.get("type"), joint.find("limit")
+    if kind == CONTINUOUS or (given is None and joint.find("mimic") is not None):
+        return -math.inf, math.inf
+    field = f"joint[{joint.get('name')}]"
+    lower, upper = (_number(f"{field}.limit", given, end) for end in ("lower", "upper"))
+    soft = joint.find("safety_controller")
+    softer = [None if soft is None else soft.get(f"soft_{end}_limit") for end in ("lower", "upper")]
+    if None not in softer:
+        low, high = (_finite(f"{field}.safety_controller", str(text)) for text in softer)
+        if low < high:
+            lower, upper = max(lower, low), min(upper, high)
+    field += ".limit"
     if lower >= upper:
         raise InputError(None, field, f"lower {lower} is not below upper {upper}")
     most = max(upper, lower, key=abs)
@@ -417,14 +317,13 @@ def _limits(name: str, joint: ET.Element, kind: str) -> str:
         if min(-lower, upper) <= _MOST_DEGREES:
             message = f"{most:g} is as good as none, and the other end has one: give both or none"
             raise InputError(None, field, message)
-        joint.set("type", CONTINUOUS)
-        return CONTINUOUS
-    return kind
+        return -math.inf, math.inf
+    return lower, upper
 
 
-def _effort(name: str, joint: ET.Element) -> InputError | None:
+def effort_fault(joint: ET.Element) -> InputError | None:
     """What is wrong with a joint's effort; vendors write 0 where they do not say it."""
-    field = f"joint[{name}].limit"
+    field = f"joint[{joint.get('name')}].limit"
     try:
         effort = _number(field, joint.find("limit"), "effort")
     except InputError as error:
@@ -434,25 +333,17 @@ def _effort(name: str, joint: ET.Element) -> InputError | None:
     return None
 
 
-def axis_of(joint: ET.Element) -> str:
-    """The axis of a joint as its file has it, three numbers."""
-    axis = joint.find("axis")
-    return "1 0 0" if axis is None else axis.get("xyz", "1 0 0")
-
-
-def _axis(name: str, joint: ET.Element) -> None:
-    field = f"joint[{name}].axis"
-    if abs(math.hypot(*_triple(field, axis_of(joint))) - 1) > 1e-6:
-        raise InputError(None, field, "must have length 1")
-
-
-def _inertial(name: str, link: ET.Element) -> None:
-    field = f"link[{name}].inertial"
-    inertial = link.find("inertial")
+def inertial_fault(link: ET.Element) -> InputError | None:
+    """Why a link's weight is not known."""
+    field, inertial = f"link[{link.get('name')}].inertial", link.find("inertial")
     if inertial is None:
-        raise InputError(None, field, "is missing: the link would weigh nothing")
-    _check_origin(field, inertial)
-    if _number(f"{field}.mass", inertial.find("mass"), "value") <= 0:
-        raise InputError(None, f"{field}.mass", "must be positive")
-    for entry in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"):
-        _number(f"{field}.inertia", inertial.find("inertia"), entry)
+        return InputError(None, field, "is missing: the link would weigh nothing")
+    try:
+        _check_origin(field, inertial)
+        if _number(f"{field}.mass", inertial.find("mass"), "value") <= 0:
+            return InputError(None, f"{field}.mass", "must be positive")
+        for entry in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"):
+            _number(f"{field}.inertia", inertial.find("inertia"), entry)
+    except InputError as error:
+        return error
+    return None

@@ -55,7 +55,7 @@ class Contacts:
         for first, second, _ in pairs:
             for each in (first, second):
                 if id(each) not in number:
-                    number[id(each)] = geometry.addGeometryObject(_placed(each, robot))
+                    number[id(each)] = geometry.addGeometryObject(_placed(each))
             geometry.addCollisionPair(pin.CollisionPair(number[id(first)], number[id(second)]))
         self._pool = pin.GeometryPool(model, geometry, _THREADS)
         for data in self._pool.getGeometryDatas():
@@ -170,20 +170,12 @@ def _chain(robot: Robot) -> pin.Model:
         for number in range(robot.joints)
     ]
     for follower in robot.followers:
-        parent = follower.parent
-        placement = _out_to(robot, parent).actInv(pin.SE3(follower.placement))
-        joints.append((parent, follower.slides, follower.axis, placement))
+        placement = pin.SE3(follower.placement)
+        joints.append((follower.parent, follower.slides, follower.axis, placement))
     for number, (parent, slides, axis, placement) in enumerate(joints):
         kind = pin.JointModelPrismaticUnaligned if slides else pin.JointModelRevoluteUnaligned
         model.addJoint(parent, kind(axis), placement, str(number))
     return model
-
-
-def _out_to(robot: Robot | None, frame: int) -> pin.SE3:
-    """Where Pinocchio has a joint in the frame behind it: a follower is out of the way there."""
-    if robot is None or frame <= robot.joints:
-        return pin.SE3.Identity()
-    return pin.SE3(robot.followers[frame - robot.joints - 1].placement)
 
 
 def _free_frame() -> pin.Model:
@@ -192,9 +184,9 @@ def _free_frame() -> pin.Model:
     return model
 
 
-def _placed(thing: Body | Shape, robot: Robot | None) -> pin.GeometryObject:
+def _placed(thing: Body | Shape) -> pin.GeometryObject:
     shape, joint = (thing.shape, thing.joint) if isinstance(thing, Body) else (thing, 0)
-    at = _out_to(robot, joint).actInv(pin.SE3(shape.rotation, shape.origin))
+    at = pin.SE3(shape.rotation, shape.origin)
     return pin.GeometryObject(str(id(thing)), joint, at, _geometry(shape))
 
 

@@ -16,13 +16,10 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.parts.mending import (
     against_the_others,
     border_groups,
+    cleaned,
     crossing_pairs,
-    flat_faces,
     in_words,
     inside_out,
-    merged,
-    repeated_corners,
-    repeated_faces,
     turned,
 )
 from cellcolor.frontend.parts.mesh import mesh_surface
@@ -74,13 +71,9 @@ class Inspection:
         duplicate_faces: how many have the corners of an earlier one.
         flat_faces: how many have no area.
         mixed_winding: how many faces wind against those around them.
-        one_sided: whether no winding fits, as on a Moebius strip.
         inside_out: how many closed components have a negative volume.
         crossings: places of pairs of faces that cross.
         edge_lengths_m: least, lower quartile, median, upper quartile, greatest.
-        sharp_edges: how many, with faces that turn by 30 degrees or more.
-        sharp_length_m: of them.
-        genus: the number of handles of a manifold mesh; None for any other.
         refusal: why a scene could not use the mesh as it is; None if it could.
         repairs: what a repair would change, without filling holes or remeshing.
         refusal_after_repair: why the mesh could not be used after that; None if it could.
@@ -106,13 +99,9 @@ class Inspection:
     duplicate_faces: int
     flat_faces: int
     mixed_winding: int
-    one_sided: bool
     inside_out: int
     crossings: tuple[Place, ...]
     edge_lengths_m: tuple[float, ...]
-    sharp_edges: int
-    sharp_length_m: float
-    genus: int | None
     refusal: str | None
     repairs: tuple[str, ...]
     refusal_after_repair: str | None
@@ -135,7 +124,6 @@ class Inspection:
     def __str__(self) -> str:
         size = " x ".join(f"{b - a:.4g}" for a, b in zip(self.low_m, self.high_m, strict=True))
         edges = [f"{1e3 * length:.3g}" for length in self.edge_lengths_m]
-        sharp = f"{self.sharp_edges:,} of 30 degrees or more, {self.sharp_length_m:.3g} m"
         first = [
             f"{own.faces:,} faces {'closed' if own.closed else 'open'}"
             for own in self.components[:_SHOWN]
@@ -147,9 +135,7 @@ class Inspection:
             ("unit", f"{self.unit}: {self.unit_reason}"),
             ("size", f"{size} m from {_at(self.low_m)} m, area {self.area_m2:.4g} m^2"),
             ("edges", f"{edges[0]} to {edges[4]} mm, quartiles {', '.join(edges[1:4])} mm"),
-            ("sharp edges", sharp if self.sharp_edges else "none of 30 degrees or more"),
             ("components", f"{len(self.components):,}: {', '.join(first)}"),
-            ("genus", "of a manifold only" if self.genus is None else f"{self.genus}"),
             *((name, text) for name, text in self._faults() if text),
             ("usable as it is", "yes" if self.refusal is None else f"no: {self.refusal}"),
         ]
@@ -167,7 +153,6 @@ class Inspection:
             list(map(_at, places))
             for places in (self.non_manifold_edges, self.non_manifold_vertices, self.crossings)
         )
-        one_sided = "a component has no outside, as a Moebius strip" if self.one_sided else ""
         return [
             ("holes", _listed("border", holes)),
             ("non-manifold", _listed("edge", edges, " of 3 faces or more")),
@@ -177,7 +162,6 @@ class Inspection:
             ("duplicates", _some(self.duplicate_faces, "face", "there twice")),
             ("flat", _some(self.flat_faces, "face", "without area")),
             ("winding", _some(self.mixed_winding, "face", "against those around")),
-            ("one-sided", one_sided),
             ("inside out", _some(self.inside_out, "closed component", "with a negative volume")),
             ("crossings", _listed("pair", crossings)),
         ]
@@ -225,23 +209,14 @@ def inspect_mesh(
     except InputError as error:
         after = str(error)
     refusal = _refusal(whole, faces, deadline)
-    there = len(np.unique(faces))
-    points, clean = merged(whole, faces)
-    folded, twins = repeated_corners(clean), there - len(points)
-    clean = clean[~folded]
-    twice = repeated_faces(clean)
-    double, clean = clean[twice], clean[~twice]
-    flat = flat_faces(points, clean)
-    thin, clean = clean[flat], clean[~flat]
-    if not len(clean):
-        raise InputError(None, "faces", "none has an area")
+    found = cleaned(whole, faces)
+    points, clean = found.vertices, found.faces
     deadline.check()
     tell("looking at edges and components")
     mesh = TriangleMesh(points, clean)
     part = mesh.parts()
-    turn, one_sided = against_the_others(clean)
+    turn, _ = against_the_others(clean)
     wrong = inside_out(TriangleMesh(points, turned(clean, turn)))
-    holes, sharp = _holes(mesh), mesh.sharp_edges(SHARP)
     many = mesh.edges[mesh.triangles_at > 2]
     split = np.flatnonzero(~igl.is_vertex_manifold(clean))
     split = split[~np.isin(split, many)]
@@ -249,40 +224,34 @@ def inspect_mesh(
     deadline.check()
     crossing = crossing_pairs(points, clean)
     deadline.check()
-    # By Euler's formula: handles of all components together.
-    genus = (2 * (int(part.max()) + 1) - len(holes) - mesh.euler) // 2
     return Inspection(
         name=name,
         unit=unit,
         unit_reason=reason,
         triangles=len(faces),
-        vertices=there,
-        unused_vertices=len(vertices) - there,
-        merged_vertices=twins,
+        vertices=len(vertices) - found.unused,
+        unused_vertices=found.unused,
+        merged_vertices=found.twins,
         low_m=tuple(points.min(axis=0).tolist()),
         high_m=tuple(points.max(axis=0).tolist()),
         area_m2=float(mesh.areas.sum()),
         components=_components(part, mesh),
-        holes=holes,
+        holes=_holes(mesh),
         non_manifold_edges=_places(points[many].mean(axis=1)),
         non_manifold_vertices=_places(points[split]),
-        duplicate_faces=len(double),
-        flat_faces=len(thin) + int(folded.sum()),
+        duplicate_faces=len(found.double),
+        flat_faces=len(found.flat) + found.folded,
         mixed_winding=int(turn.sum()),
-        one_sided=bool(one_sided.any()),
         inside_out=len(np.unique(part[wrong])),
         crossings=_crossing_places(mesh, crossing),
         edge_lengths_m=tuple(np.percentile(mesh.lengths, [0, 25, 50, 75, 100]).tolist()),
-        sharp_edges=len(sharp),
-        sharp_length_m=float(mesh.lengths[sharp].sum()),
-        genus=None if len(many) or len(split) else genus,
         refusal=refusal,
         repairs=tuple(repairs),
         refusal_after_repair=after,
         mesh=TriangleMesh(whole, faces),
         faulty_faces={
-            "faces there twice": points[double],
-            "faces without area": points[thin],
+            "faces there twice": points[found.double],
+            "faces without area": points[found.flat],
             "faces wound against their neighbors": points[clean[turn]],
             "closed components inside out": points[clean[wrong]],
             "faces that cross": points[clean[np.unique(crossing)]],
@@ -290,7 +259,7 @@ def inspect_mesh(
         faulty_edges={
             "holes and borders": points[mesh.edges[mesh.triangles_at == 1]],
             "edges with more than two faces": points[many],
-            "sharp edges": points[mesh.edges[sharp]],
+            "sharp edges": points[mesh.edges[mesh.sharp_edges(SHARP)]],
         },
     )
 

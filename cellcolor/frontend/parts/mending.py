@@ -6,6 +6,8 @@ Every function takes vertices (n, 3) and faces (m, 3). Whether a scene can use a
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import igl
 import igl.predicates
 import numpy as np
@@ -38,6 +40,48 @@ def used(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
     return vertices[there], number.reshape(-1, 3).astype(np.int64)
 
 
+@dataclass(frozen=True)
+class Cleaned:
+    """A mesh without useless faces, and what was left out.
+
+    Attributes:
+        vertices: (n, 3), for vertices in one place the first of them.
+        faces: (m, 3) with an area, each once.
+        unused, twins: how many vertices no face had, and how many were in one place with another.
+        folded: how many faces had two corners in one place.
+        double: (k, 3) faces that were there twice.
+        flat: (k, 3) faces without area.
+    """
+
+    vertices: Array
+    faces: Faces
+    unused: int
+    twins: int
+    folded: int
+    double: Faces
+    flat: Faces
+
+
+def cleaned(vertices: Array, faces: Faces) -> Cleaned:
+    """A mesh without what no repair needs to think about.
+
+    Raises:
+        InputError: no face is left.
+    """
+    there = len(np.unique(faces))
+    points, corners = merged(vertices, faces)
+    folded = repeated_corners(corners)
+    corners = corners[~folded]
+    twice = repeated_faces(corners)
+    double, corners = corners[twice], corners[~twice]
+    thin = flat_faces(points, corners)
+    flat, corners = corners[thin], corners[~thin]
+    if not len(corners):
+        raise InputError(None, "faces", "none is left that has an area and is no copy of another")
+    unused, twins = len(vertices) - there, there - len(points)
+    return Cleaned(points, corners, unused, twins, int(folded.sum()), double, flat)
+
+
 def repeated_corners(faces: Faces) -> Mask:
     """The faces (m,) with a vertex that is two of their corners."""
     a, b, c = faces.T
@@ -61,26 +105,28 @@ def flat_faces(vertices: Array, faces: Faces) -> Mask:
     return np.asarray(2 * TriangleMesh(vertices, faces).areas <= _FLAT * longest**2)
 
 
-def without_flat(vertices: Array, faces: Faces) -> Faces:
-    """The faces that have an area.
+def refuse_gaps(vertices: Array, faces: Faces, flat: Faces) -> None:
+    """Refuse faces beside flat ones: without these there would be gaps.
 
     Raises:
-        InputError: without a flat face there would be a gap between others: a corner of it lies on
-            the side of another face (a T-vertex). Names the place.
+        InputError: a corner of a flat face lies on the side of another (a T-vertex); names the
+            place.
     """
-    flat, mesh = flat_faces(vertices, faces), TriangleMesh(vertices, faces)
-    of_flat = np.zeros(len(mesh.edges), dtype=bool)
-    of_flat[mesh.edge_of_side[flat]] = True
-    torn = of_flat[mesh.edge_of_side].any(axis=1) & ~flat
-    if torn.any():
-        side = mesh.edge_of_side[np.argmax(torn)]
-        middle = vertices[mesh.edges[side[of_flat[side]][0]]].mean(axis=0)
+    beside = np.isin(_sides(faces, len(vertices)), _sides(flat, len(vertices)))
+    if beside.any():
+        face, side = np.argwhere(beside)[0]
+        middle = vertices[np.roll(faces[face], -side)[:2]].mean(axis=0)
         message = (
             "are flat, with a corner on the side of another face (a T-vertex): no repair closes "
             "that; the part has to be meshed anew by what it comes from"
         )
         raise InputError(None, f"faces near {in_words(middle)}", message)
-    return faces[~flat]
+
+
+def _sides(faces: Faces, vertices: int) -> Index:
+    """A number (m, 3) for each side of faces, the same in both directions."""
+    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)]), axis=0)
+    return np.asarray(ends[0] * vertices + ends[1])
 
 
 def in_words(place: Array) -> str:

@@ -18,14 +18,12 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.mending import (
     against_the_others,
+    cleaned,
     in_words,
     inside_out,
-    merged,
-    repeated_corners,
-    repeated_faces,
+    refuse_gaps,
     turned,
     used,
-    without_flat,
 )
 from cellcolor.frontend.parts.part import Part
 from cellcolor.frontend.parts.surface import Faces, Surface, refine
@@ -125,10 +123,9 @@ def check_corners(vertices: Array, faces: Faces) -> None:
 
 
 def _repaired(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
-    vertices, faces = merged(vertices, faces)
-    faces = faces[~repeated_corners(faces)]
-    faces = faces[~repeated_faces(faces)]
-    vertices, faces = used(vertices, without_flat(vertices, faces))
+    clean = cleaned(vertices, faces)
+    refuse_gaps(clean.vertices, clean.faces, clean.flat)
+    vertices, faces = used(clean.vertices, clean.faces)
     faces = turned(faces, against_the_others(faces)[0])
     return vertices, turned(faces, inside_out(TriangleMesh(vertices, faces)))
 

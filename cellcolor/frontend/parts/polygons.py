@@ -12,6 +12,8 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
+_BENT = np.radians(30.0)  # between a face's normal and that of a triangle in it
+_SMALL = 0.01  # of a face's area; smaller triangles say nothing of how it bends
 _AGAINST = 1e-9  # of a face's area; a triangle that is so far wound against its face is outside
 
 
@@ -29,7 +31,7 @@ def triangulated(
         name: of a face in its file, for errors.
 
     Raises:
-        InputError: a face crosses itself, so no triangles fill it.
+        InputError: a face crosses itself, so no triangles fill it, or it is far from flat.
     """
     of = np.repeat(np.arange(len(sizes)), sizes - 2)
     starts = np.cumsum(sizes) - sizes
@@ -46,15 +48,42 @@ def triangulated(
             message = f"the face of {len(own)} corners crosses itself: no triangles fill it"
             raise InputError(None, name(face), message)
         faces[of == face] = ears
+    _refuse_bent(places, faces, of, sizes, name)
     return faces
 
 
 def _leaving(vertices: Array, triangles: Faces, of: Index, faces: int) -> Mask:
     """Of which faces (faces,) some triangle lies outside, by the face ``of`` each (m,)."""
-    mesh = TriangleMesh(vertices, triangles)
-    whole, area = np.zeros((faces, 3)), np.bincount(of, mesh.areas, faces)
-    np.add.at(whole, of, mesh.area_vectors)
-    size = np.linalg.norm(whole, axis=1)
+    along, area, size = _along_face(vertices, triangles, of, faces)
     least = np.full(faces, np.inf)
-    np.minimum.at(least, of, np.einsum("ij,ij->i", mesh.area_vectors, whole[of]))
+    np.minimum.at(least, of, along)
     return np.asarray((least < -_AGAINST * size * area) | (size < _AGAINST * area))
+
+
+def _refuse_bent(
+    vertices: Array, triangles: Faces, of: Index, sizes: Index, name: Callable[[int], str]
+) -> None:
+    """Refuse a face of more than three corners that is far from flat: where it bends is open."""
+    along, _, size = _along_face(vertices, triangles, of, len(sizes))
+    areas = np.linalg.norm(TriangleMesh(vertices, triangles).area_vectors, axis=1)
+    large = (sizes[of] > 3) & (areas > _SMALL * size[of])
+    bent = np.flatnonzero(large & (along < np.cos(_BENT) * areas * size[of]))
+    if len(bent):
+        at = bent[0]
+        angle = np.degrees(np.arccos(np.clip(along[at] / (areas[at] * size[of[at]]), -1, 1)))
+        message = (
+            f"the face of {sizes[of[at]]} corners is far from flat, a part of it {angle:.0f} "
+            "degrees off the whole: triangles have to say where it bends"
+        )
+        raise InputError(None, name(int(of[at])), message)
+
+
+def _along_face(
+    vertices: Array, triangles: Faces, of: Index, faces: int
+) -> tuple[Array, Array, Array]:
+    """Products (m,) of the area vectors of triangles and their faces; area and size of faces."""
+    mesh = TriangleMesh(vertices, triangles)
+    whole = np.zeros((faces, 3))
+    np.add.at(whole, of, mesh.area_vectors)
+    along = np.einsum("ij,ij->i", mesh.area_vectors, whole[of])
+    return along, np.asarray(np.bincount(of, mesh.areas, faces)), np.linalg.norm(whole, axis=1)

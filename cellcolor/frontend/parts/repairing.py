@@ -15,17 +15,14 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.parts.mending import (
     against_the_others,
     border_groups,
+    cleaned,
     cut_apart,
     filled,
-    flat_faces,
     in_words,
     inside_out,
-    merged,
-    repeated_corners,
-    repeated_faces,
+    refuse_gaps,
     turned,
     used,
-    without_flat,
 )
 from cellcolor.frontend.parts.mesh import check_corners, mesh_surface
 from cellcolor.frontend.parts.remeshing import Deviation, length_for, remeshed
@@ -184,24 +181,16 @@ def mended(
         if number:
             changes.append(f"{counted(number, one)} {what}" + (f" ({area:+.3g} m^2)" * bool(area)))
 
-    step("merging vertices")
-    there = len(np.unique(faces))
-    note(len(vertices) - there, "vertex", "dropped that no face uses")
-    vertices, faces = merged(vertices, faces)
-    note(there - len(vertices), "vertex", "merged with another in the same place")
-    step("dropping useless faces")
-    folded = repeated_corners(faces)
-    note(int(folded.sum()), "face", "dropped: two corners in one place")
-    faces = faces[~folded]
-    twice = repeated_faces(faces)
-    area = _area_of(vertices, faces[twice])
-    note(int(twice.sum()), "face", "dropped: there twice", -area)
-    faces = faces[~twice]
-    flat = int(flat_faces(vertices, faces).sum())
-    if flat == len(faces):
-        raise InputError(None, "faces", "none is left that has an area and is no copy of another")
-    note(flat, "face", "dropped: without area")
-    vertices, faces = used(vertices, without_flat(vertices, faces))
+    step("merging vertices and dropping useless faces")
+    clean = cleaned(vertices, faces)
+    area = _area_of(clean.vertices, clean.double)
+    note(clean.unused, "vertex", "dropped that no face uses")
+    note(clean.twins, "vertex", "merged with another in the same place")
+    note(clean.folded, "face", "dropped: two corners in one place")
+    note(len(clean.double), "face", "dropped: there twice", -area)
+    note(len(clean.flat), "face", "dropped: without area")
+    refuse_gaps(clean.vertices, clean.faces, clean.flat)
+    vertices, faces = used(clean.vertices, clean.faces)
     step("making the winding consistent")
     turn, one_sided = against_the_others(faces)
     if one_sided.any():

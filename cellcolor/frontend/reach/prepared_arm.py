@@ -22,6 +22,7 @@ from cellcolor.frontend.arm.inverse import (
 )
 from cellcolor.frontend.arm.kinematics import Conditioning, conditioning, task_determinants
 from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.newton import stacked
 from cellcolor.frontend.arm.robot import Robot, TaskSpace
 from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at
 from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
@@ -68,15 +69,11 @@ class PreparedArm:
 
         See :class:`~cellcolor.frontend.arm.inverse.InverseKinematics`.
         """
-        parts = []
+        parts = [np.empty((0, 1, self.robot.joints))]
         for rows in chunks(len(points), self.slots):
             deadline.check()
-            parts.append((rows, self.kinematics.solve(points[rows], directions[rows])))
-        most = max([1, *(part.shape[1] for _, part in parts)])
-        found = np.full((len(points), most, self.robot.joints), np.nan)
-        for rows, part in parts:
-            found[rows, : part.shape[1]] = part
-        return found
+            parts.append(self.kinematics.solve(points[rows], directions[rows]))
+        return stacked(parts)
 
     @property
     def slots(self) -> int:

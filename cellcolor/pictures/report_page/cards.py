@@ -153,20 +153,12 @@ def _coverage(report: MotionReport) -> Card | None:
         ("of the area with a color", f"{1e4 * covered.reachable_m2:.0f} cm²"),
         (f"within {1.5 * spacing:g} mm of a pass", _percent(covered.covered_share)),
         (f"within {0.75 * spacing:g} mm of a pass", _percent(covered.closely_covered_share)),
-        ("left out, rightly", _percent(covered.left_out_share)),
+        ("left out, the arm cannot reach it", _percent(covered.left_out_share)),
         ("uncovered without a reason", f"{1e4 * covered.uncovered_m2:.1f} cm²"),
         ("visits, mean and most", f"{covered.mean_visits:.2f}, {covered.most_visits}"),
         ("along earlier passes", f"{covered.repeated_m:.2f} of {covered.length_m:.2f} m"),
         ("length × spacing / area", f"{covered.length_times_spacing_per_area:.2f}"),
     ]
-    if report.measures:
-        sharp = sum(own.sharp_turns * own.length_m for own in report.measures)
-        length = sum(own.length_m for own in report.measures)
-        longest = 1e3 * max(own.longest_step_m for own in report.measures)
-        rows += [
-            ("turns over 60°", f"{_percent(sharp / length if length else 0)} of path points"),
-            ("longest step of a path", f"{longest:.1f} mm"),
-        ]
     return Card("Coverage", (text,), (("", ""), *rows))
 
 

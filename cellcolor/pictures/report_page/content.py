@@ -16,7 +16,6 @@ from cellcolor.questions.explanation import Explanation
 from cellcolor.questions.front import Front
 from cellcolor.questions.placements import Placements
 from cellcolor.questions.set_ups import SetUpPlan
-from cellcolor.tool_paths.measures import PathMeasures
 
 
 @dataclass(frozen=True)
@@ -69,7 +68,6 @@ class MotionReport:
         solution: its solution, None before the search.
         painted: the solution on the surface; None if it was not painted.
         trajectory: how the arm moves; None if that was not planned or not judged.
-        measures: of each tool path.
         verdict: an independent judge's; None without a trajectory.
         paths: the tool paths, which are drawn if there is no trajectory.
         missing: what of this there is not, and why, as a sentence; empty for a whole plan.
@@ -83,7 +81,6 @@ class MotionReport:
     solution: Solution | None
     painted: Painted | None
     trajectory: Trajectory | None
-    measures: tuple[PathMeasures, ...]
     verdict: TrajectoryVerdict | None
     paths: ToolPaths | None = None
     missing: str = ""

@@ -33,8 +33,8 @@ function armPoses(arm, joints) {
   });
   const tip = poses.at(-1).clone().multiply(matrix(arm.tip));
   for (const { parent, placement, axis, slides, leader, multiplier, offset } of arm.followers) {
-    const fixed = matrix(placement), own = moved(axis, slides, multiplier * joints[leader] + offset);
-    poses.push(poses[parent].clone().multiply(fixed).multiply(own).multiply(fixed.clone().invert()));
+    const own = moved(axis, slides, multiplier * joints[leader] + offset);
+    poses.push(poses[parent].clone().multiply(matrix(placement)).multiply(own));
   }
   return [...poses, tip];
 }

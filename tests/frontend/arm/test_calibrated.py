@@ -13,11 +13,17 @@ from solution_sets import Arm, from_many_starts
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.arm.calibrated import Axes, idealized, missing, put_all
+from cellcolor.frontend.arm.calibrated import (
+    Axes,
+    NearIdeal,
+    both_sides_of_folds,
+    idealized,
+    missing,
+)
 from cellcolor.frontend.arm.eaik import EaikKinematics
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
-from cellcolor.frontend.arm.newton import both_sides_of_folds, nearest
+from cellcolor.frontend.arm.newton import nearest
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import BRANCHES, UrKinematics
 from cellcolor.frontend.setup import RobotFiles
@@ -177,15 +183,23 @@ def test_both_sides_of_a_fold_are_tried() -> None:
     assert np.allclose(np.linalg.norm(sides, axis=1), 0.1) and np.allclose(sides[0], -sides[1])
 
 
+class Given:
+    """Signs that are told which name and which determinant each solution has."""
+
+    def branches(self, _: Robot, solutions: Array) -> tuple[Array, Array]:
+        return np.array([2, 2, 2, 6, 2])[: len(solutions)], np.array([0.2, 0.3, 0.1, 0.5, 0.2])
+
+
 def test_two_of_the_same_signs_have_names_as_long_as_there_are_any() -> None:
-    named = np.full((16, 6), np.nan)
+    """Three by the name 2, and one by 6; the last is the first one again."""
+    robot = dh_arms.robot(dh_arms.urdf("ur5e"))
     solutions = np.outer(np.arange(1.0, 6.0), np.full(6, 0.1))
-    solutions[4] = solutions[0] + 2 * np.pi  # the first one again
-    # Of the second pose: three by the name 2, and one by 6, each with its determinant.
-    put_all(named, solutions, np.array([10, 10, 10, 14, 10]), np.array([0.2, 0.3, 0.1, 0.5, 0.2]))
-    assert np.flatnonzero(~np.isnan(named[:, 0])).tolist() == [9, 10, 14]
+    solutions[4] = solutions[0] + 2 * np.pi
+    arm = NearIdeal(robot=robot, closed_form=lambda *_: solutions[None], off=(0.0, 0.0))
+    (named,) = arm.named(solutions[None], Given())  # type: ignore[arg-type]
+    assert np.flatnonzero(~np.isnan(named[:, 0])).tolist() == [1, 2, 6]
     # The largest determinant has the name, the next one that of the other elbow and wrist.
-    assert (named[[10, 9, 14]] == solutions[[1, 0, 3]]).all()
+    assert (named[[2, 1, 6]] == solutions[[1, 0, 3]]).all()
 
 
 def test_the_nearest_is_told_modulo_full_circles() -> None:

@@ -86,7 +86,7 @@ def test_names_stay_the_same_without_a_singularity(name: str, seed: int, steps: 
     # Where it is so large that it cannot have been zero between two points: it changes by less
     # than its largest difference.
     clear = determinant > 2 * np.abs(np.diff(determinant)).max()
-    signs = FAMILIES[name]._signs
+    signs = FAMILIES[name]._solution.signs
     assert signs is not None
     branches, _ = signs.branches(ROBOTS[name], fine)
     together = clear[1:] & clear[:-1]

@@ -6,11 +6,14 @@ import re
 from pathlib import Path
 
 import pytest
-from shipped import ROBOTS
+from shipped import ROBOTS, TOP
 
+from cellcolor.errors import InputError
+from cellcolor.frontend import Scene
 from cellcolor.frontend.arm.far_shapes import notes_on_shapes
 from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.urdf import parse_urdf
+from cellcolor.frontend.prepared import prepare
 
 UR5 = (ROBOTS / "ur5.urdf").read_text()
 TOOL = ROBOTS / "polishing_tool.urdf"
@@ -48,6 +51,27 @@ def test_a_shape_in_millimeters() -> None:
     wide = UR5[:at] + re.sub(r'radius="[^"]*"', 'radius="60"', UR5[at:], count=1)
     (note,) = notes(wide)
     assert "'forearm_link'" in note and "looks like millimeters" in note
+
+
+def test_one_of_several_shapes_that_is_elsewhere() -> None:
+    """The sphere at one end of the upper arm, 0.9 m off: not as far as the arm is long."""
+    at = UR5.index("<collision>", UR5.index('<link name="upper_arm_link"'))
+    at = UR5.index("<sphere", at)
+    at = UR5.rindex("<collision>", 0, at)
+    (note,) = notes(UR5[:at] + re.sub(r'xyz="\S+', 'xyz="0.9', UR5[at:], count=1))
+    assert "a collision shape of 'upper_arm_link' is 0." in note and "origin" in note
+
+
+def test_a_base_in_millimeters_is_not_blamed_on_the_part() -> None:
+    at = UR5.index("<collision>", UR5.index('<link name="base_link"'))
+    text = UR5[:at] + re.sub(r'radius="[^"]*"', 'radius="75"', UR5[at:], count=1)
+    (note,) = notes(text)
+    assert "'base_link' are up to 150 m large" in note and "0.15" in note
+    scene = Scene.read(TOP / "instances" / "scenes" / "wok.toml")
+    robot = {"arm_urdf": text, "tool_urdf": str(TOOL)}
+    with pytest.raises(InputError, match=r"looks like millimeters: 0\.15") as caught:
+        prepare(scene.with_setup(scene.setup.varied(robot=robot)))
+    assert caught.value.field == "link[base_link].collision"
 
 
 @pytest.mark.parametrize("robot", ["ur3e", "ur5e_calibrated", "ur16e", "kr6", "irb120", "tx2_60"])

@@ -129,6 +129,27 @@ def test_stars_are_filled(radii: list[float]) -> None:
     assert found.areas.sum() == pytest.approx(area)
 
 
+@pytest.mark.parametrize(("degrees", "refused"), [(0, False), (25, False), (35, True), (80, True)])
+def test_a_face_that_is_far_from_flat_is_named(
+    degrees: float, refused: bool, tmp_path: Path
+) -> None:
+    """A square folded along its diagonal: each half is so far off the whole."""
+    half = np.radians(degrees)
+    aside = np.array([0, np.cos(half), np.sin(half)])
+    points = np.array([[-1, 0, 0], -aside * [0, 1, -1], [1, 0, 0], aside])
+    rows = ["v {} {} {}".format(*point) for point in points.tolist()]
+    file = tmp_path / "folded.obj"
+    file.write_text("\n".join([*rows, "f 1 2 3 4"]))
+    if not refused:
+        assert len(read_mesh(file)[1]) == 2
+        return
+    with pytest.raises(
+        InputError, match=f"4 corners is far from flat.* {degrees} degrees"
+    ) as caught:
+        read_mesh(file)
+    assert caught.value.field == "line 5"
+
+
 def test_a_face_that_crosses_itself_is_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="face of 4 corners crosses itself") as caught:
         read(tmp_path, SQUARE + "f 1 2 3\nf 1 3 2 4\n")
