@@ -119,13 +119,8 @@ def valid(count: int) -> bool:
             wrong = contradictions(judge, colors, verdict, fewest)
             for text in wrong:
                 print(f"{surface.name}, {sort}: {text}")
-            row = (
-                True,
-                verdict.optimal is True,
-                bool(verdict.beatable_by),
-                verdict.beatable_by is None,
-                bool(wrong),
-            )
+            fewer = verdict.beatable_by
+            row = (True, verdict.optimal is True, bool(fewer), fewer is None, bool(wrong))
             for column, holds in zip(columns, row, strict=True):
                 found[column][sort] += holds
     print(f"{len(pool)} surfaces, the minimum of {exact} is known\n")

@@ -2,18 +2,31 @@
 
 Each kind of bound with a certificate has its verifier in a table. A verifier gets a
 :class:`~cellcolor.checker.proof.Proof` and the certificate, and raises what speaks against it.
+
+The certificate of a ``cover`` or of ``strangers`` names some cells, and the claim is that fewer
+color regions than the bound says do not touch all of them. That of ``conflicts`` names, for each
+part of the surface, such cells as well, and pairs of segments that would have to cross. What
+crosses is verified by :mod:`cellcolor.checker.crossing_segments`, and then every way to touch the
+cells is tried by :mod:`cellcolor.checker.plan_search`, to the end or until the budget is used up.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from cellcolor.checker.color_regions import ColorRegion
-from cellcolor.checker.parts_proof import verify_cells, verify_parts
-from cellcolor.checker.proof import BudgetExceeded, Proof, Refused
-from cellcolor.data.bound_kinds import certificate_of
+from cellcolor.checker.crossing_segments import WORK, TwoRegions
+from cellcolor.checker.groups import Groups
+from cellcolor.checker.plan_search import Conflict, PlanSearch
+from cellcolor.checker.proof import BudgetExceeded, Proof, Refused, few
+from cellcolor.data.bound_kinds import (
+    CertifiedCells,
+    CertifiedPart,
+    CertifiedParts,
+    certificate_of,
+)
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
@@ -56,6 +69,17 @@ class BoundVerdict:
         return f"{self.bound}: {self.outcome}{tried}{reason}"
 
 
+def verify_cells(proof: Proof, certificate: CertifiedCells, value: int) -> None:
+    """Verify that fewer color regions do not touch all of the cells."""
+    _verify(proof, (CertifiedPart(value, certificate.cells),), value)
+
+
+def verify_parts(proof: Proof, certificate: CertifiedParts, value: int) -> None:
+    """Verify that the parts together need that many segments."""
+    _leave_out(proof, certificate.left_out)
+    _verify(proof, certificate.parts, value)
+
+
 VERIFIERS: dict[str, Callable[[Proof, Any, int], None]] = {
     "strangers": verify_cells,
     "cover": verify_cells,
@@ -92,3 +116,92 @@ def verify_bound(
     except (InputError, Refused) as error:
         outcome, reason = "refused", str(error)
     return BoundVerdict(bound, outcome, reason, proof.tried, budget)
+
+
+def _leave_out(proof: Proof, steps: Sequence[tuple[int, int, int]]) -> None:
+    """Leave out color regions that another color can stand in for, one after the other."""
+    for color, cell, stand_in in steps:
+        region = proof.region(color, cell)
+        cells = proof.cells_of(region)
+        inside = frozenset(cells)
+        for own in cells:
+            if not any(other[0] == stand_in for other in proof.regions[own]):
+                raise Refused(f"color {stand_in} cannot stand in for color {color} in {own}")
+            for dart in (dart for loop in proof.instance.cells[own].loops for dart in loop):
+                joinable = proof.instance.joinable(abs(dart))
+                edge = proof.instance.edge(abs(dart))
+                within = edge.left in inside and edge.right in inside
+                if within and color in joinable and stand_in not in joinable:
+                    text = f"color {stand_in} does not continue across edge {abs(dart)}"
+                    raise Refused(f"{text}, where color {color} does")
+        if stand_in == color:
+            raise Refused(f"color {color} cannot stand in for itself")
+        for own in cells:
+            proof.regions[own] -= {region}
+
+
+def _verify(proof: Proof, parts: Sequence[CertifiedPart], value: int) -> None:
+    if sum(part.value for part in parts) < value:
+        raise Refused(f"the parts need fewer than {value} segments")
+    used: set[ColorRegion] = set()
+    for part in parts:
+        demands = {cell: proof.regions_of(cell) for cell in part.cells}
+        own = frozenset[ColorRegion]().union(*demands.values())
+        if not used.isdisjoint(own):
+            raise Refused("one color region lies in two parts")
+        used |= own
+        conflicts = list(_conflicts(proof, part))
+        if PlanSearch(demands, conflicts, proof.count).is_possible(part.value - 1):
+            fewer = f"{part.value} {'segments' if conflicts else 'color regions'}"
+            raise Refused(f"fewer than {fewer} touch all of the cells {few(part.cells)}")
+
+
+def _conflicts(proof: Proof, part: CertifiedPart) -> Iterator[Conflict]:
+    two_regions: dict[tuple[ColorRegion, ColorRegion], TwoRegions] = {}
+    for crossing in part.conflicts:
+        if proof.deadline.over:
+            raise BudgetExceeded
+        ends = [frozenset(cells) for cells in (*crossing.one, *crossing.other)]
+        if not all(ends):
+            raise Refused("a conflict names no cells")
+        first = proof.region(crossing.colors[0], min(ends[0]))
+        second = proof.region(crossing.colors[1], min(ends[2]))
+        for cells in ends[:2]:
+            _one_area(proof, cells, first, second)
+        for cells in ends[2:]:
+            _one_area(proof, cells, second, first)
+        if (first, second) not in two_regions:
+            cells_of = frozenset(proof.cells_of(first)), frozenset(proof.cells_of(second))
+            two_regions[first, second] = TwoRegions(
+                proof.instance, crossing.colors, cells_of, proof.count
+            )
+        two = two_regions[first, second]
+        one, other, far, farther = (min(cells) for cells in ends)
+        if not two.must_cross((one, other), (far, farther)):
+            text = f"segments that connect cells {one} and {other}, and {far} and {farther}"
+            raise Refused(f"{text}, need not cross")
+        yield Conflict((first, second), (ends[0], ends[1], ends[2], ends[3]))
+
+
+def _one_area(proof: Proof, cells: frozenset[int], region: ColorRegion, other: ColorRegion) -> None:
+    """Hold cells of one region to be connected in its color, and outside of the other region.
+
+    What touches one of them can then be grown over all of them: the other segment is in none.
+    """
+    for cell in cells:
+        if region not in proof.regions_of(cell):
+            raise Refused(f"cell {cell} is not in the color region of cell {min(cells)}")
+        if other in proof.regions_of(cell):
+            raise Refused(f"cell {cell} is in the color regions of both segments")
+    darts = [dart for c in cells for loop in proof.instance.cells[c].loops for dart in loop]
+    proof.count((len(cells) + len(darts)) // WORK)
+    together: Groups[int] = Groups()
+    for cell in cells:
+        together.find(cell)
+    for dart in darts:
+        edge = proof.instance.edge(abs(dart))
+        inside = edge.left in cells and edge.right in cells
+        if inside and region[0] in proof.instance.joinable(abs(dart)):
+            together.join(edge.left, edge.right)
+    if len(together.sets()) > 1:
+        raise Refused(f"the cells {few(cells)} are not connected in color {region[0]}")

@@ -8,7 +8,6 @@ from dataclasses import astuple
 from math import isclose
 
 from cellcolor.checker.certificates import BoundVerdict
-from cellcolor.checker.cutting_paths import cutting_paths
 from cellcolor.checker.groups import Groups
 from cellcolor.data.bounds import greatest
 from cellcolor.data.coverage import Coverage
@@ -30,7 +29,6 @@ def number_problems(
     problems = _bound_problems(instance, solution, segments)
     problems += _proof_problems(solution, segments)
     problems += _scheme_problems(instance, solution)
-    problems += _cutting_problems(instance, solution)
     if segments is not None:
         if solution.segments != segments:
             problems.append(f"segments: says {solution.segments}, the division has {segments}")
@@ -61,8 +59,9 @@ def claims(
         found["status"] = solution.status
     if solution.proved_for_surface and "surface_lower_bound" in found:
         found["proved_for_surface"] = True
-    if solution.cutting_paths_lower_bound:
-        found["cutting_paths_lower_bound"] = solution.cutting_paths_lower_bound
+    for name in ("cutting_paths", "cutting_paths_lower_bound"):
+        if value := getattr(solution, name):
+            found[name] = value
     if solution.schemes is not None:
         found |= {"schemes": solution.schemes, "complete": solution.complete}
     if solution.coverage is not None and instance.coverage is None:
@@ -139,25 +138,6 @@ def _scheme_problems(instance: Instance, solution: Solution) -> list[str]:
         problems.append("schemes: cannot be 0 and complete; some optimal division is a scheme")
     if not instance.cells and schemes > 1:
         problems.append(f"schemes: says {schemes}, an instance without cells has 1")
-    return problems
-
-
-def _cutting_problems(instance: Instance, solution: Solution) -> list[str]:
-    paths, bound = solution.cutting_paths, solution.cutting_paths_lower_bound
-    if solution.cells is None:
-        # Of the fewest segments, that is, and how many these are is not known.
-        wrong = paths is not None or bound
-        return ["cutting_paths: cannot be known without a division"] if wrong else []
-    if paths is None and bound is None:
-        return []
-    if paths is None or bound is None:
-        return ["cutting_paths: goes with cutting_paths_lower_bound"]
-    problems = []
-    own = cutting_paths(instance, solution.cells, solution.seams)
-    if paths != own:
-        problems.append(f"cutting_paths: says {paths}, the division has {own}")
-    if bound > own:
-        problems.append(f"cutting_paths_lower_bound: {bound} cannot be above the {own} found")
     return problems
 
 

@@ -15,12 +15,14 @@ from cellcolor.checker.groups import Groups
 from cellcolor.checker.scheme_rules import (
     Joinable,
     PaintedCell,
+    as_one,
     crossing,
     idle_cut,
     on_loops,
     superfluous,
     unavoidable_join,
     unavoidable_join_on_loops,
+    unconnected_pair,
 )
 from cellcolor.data.cells_and_edges import Strand, strand_of, twin
 from cellcolor.data.instance import Instance
@@ -121,19 +123,19 @@ def check_scheme(instance: Instance, division: Division) -> Report:
     if not problems:
         cells = on_loops(instance, division, (), 1)
         problems += [
-            f"cells[{cell.id}].subcells: cannot be drawn without crossing each other"
-            for cell in cells
-            if not can_be_drawn([[loop.block_of[d] for d in loop.joined()] for loop in cell.loops])
+            f"cells[{cell_id}].subcells: cannot be drawn without crossing each other"
+            for cell_id, own in cells.items()
+            if not can_be_drawn([[loop.block_of[d] for d in loop.joined()] for loop in own])
         ] or _edge_problems(division, joinable)
     if problems:
         return Report(tuple(problems), (), None)
     canonical: list[str] = []
-    for its in cells:
-        canonical += _not_canonical(its.id, its.whole, its.loops)
-        pair = its.unconnected_pair()
+    for cell_id, own in cells.items():
+        canonical += _not_canonical(cell_id, as_one(own), own)
+        pair = unconnected_pair(own)
         if pair is not None:
             canonical.append(
-                f"cells[{its.id}].subcells: {pair[0]} and {pair[1]} have one color and no chain "
+                f"cells[{cell_id}].subcells: {pair[0]} and {pair[1]} have one color and no chain "
                 "of loops connects them"
             )
     return _legal(division, unavoidable_join_on_loops(cells, joinable), canonical)

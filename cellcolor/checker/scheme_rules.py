@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
-from cellcolor.checker.cutting_paths import whole_subcells
 from cellcolor.checker.dart_lists import strands_along
 from cellcolor.checker.groups import Groups
+from cellcolor.checker.whole_subcells import whole_subcells
 from cellcolor.data.cells_and_edges import Strand, twin
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
@@ -149,45 +149,37 @@ def _contradiction(clauses: Sequence[tuple[_Literal, _Literal]]) -> Strand | Non
     return max(stuck, default=None)
 
 
-@dataclass(frozen=True, slots=True)
-class PaintedLoops:
-    """A cell's division, loop by loop; each loop has the sub-cells of the whole cell."""
+PaintedLoops = dict[int, list[PaintedCell]]
+"""The division of each cell with live loops, loop by loop; each has the sub-cells of the cell."""
 
-    id: int
-    loops: tuple[PaintedCell, ...]
 
-    @property
-    def whole(self) -> PaintedCell:
-        """All loops as if they were one."""
-        darts = [dart for loop in self.loops for dart in loop.darts]
-        block_of = {dart: block for loop in self.loops for dart, block in loop.block_of.items()}
-        return PaintedCell(darts, block_of, self.loops[0].colors)
+def as_one(loops: Sequence[PaintedCell]) -> PaintedCell:
+    """All loops of a cell as if they were one."""
+    darts = [dart for loop in loops for dart in loop.darts]
+    block_of = {dart: block for loop in loops for dart, block in loop.block_of.items()}
+    return PaintedCell(darts, block_of, loops[0].colors)
 
-    def unconnected_pair(self) -> tuple[int, int] | None:
-        """Two sub-cells of one color that no chain of loops and sub-cells connects."""
-        groups: Groups[int] = Groups()
-        for loop in self.loops:
-            blocks = list(loop.block_of.values())
-            for block in blocks:
-                groups.join(blocks[0], block)
-        group = {block: n for n, part in enumerate(groups.sets()) for block in part}
-        colors = self.loops[0].colors
-        return next(
-            (
-                (one, other)
-                for one, other in combinations(sorted(group), 2)
-                if colors[one] == colors[other] and group[one] != group[other]
-            ),
-            None,
-        )
+
+def unconnected_pair(loops: Sequence[PaintedCell]) -> tuple[int, int] | None:
+    """Two sub-cells of one color that no chain of loops and sub-cells connects."""
+    groups: Groups[int] = Groups()
+    for loop in loops:
+        blocks = list(loop.block_of.values())
+        for block in blocks:
+            groups.join(blocks[0], block)
+    colors = loops[0].colors
+    for one, other in combinations(sorted(b for part in groups.sets() for b in part), 2):
+        if colors[one] == colors[other] and groups.find(one) != groups.find(other):
+            return one, other
+    return None
 
 
 def on_loops(
     instance: Instance, division: Division, seams: Sequence[Seam], strands: int
-) -> list[PaintedLoops]:
-    """A legal division without its seams; cells without live loops are left out."""
+) -> PaintedLoops:
+    """A legal division without its seams."""
     virtual = {seam.id for seam in seams}
-    found = []
+    found: PaintedLoops = {}
     for cell, divided in zip(instance.cells, division, strict=True):
         subcells = whole_subcells(divided, virtual)
         block_of = {
@@ -198,16 +190,15 @@ def on_loops(
             [strand for dart in loop for strand in strands_along(dart, strands)]
             for loop in instance.live_loops[cell.id]
         ]
-        painted = tuple(
-            PaintedCell(loop, {dart: block_of[dart] for dart in loop if dart in block_of}, colors)
-            for loop in loops
-        )
-        if painted:
-            found.append(PaintedLoops(cell.id, painted))
+        if loops:
+            found[cell.id] = [
+                PaintedCell(loop, {d: block_of[d] for d in loop if d in block_of}, colors)
+                for loop in loops
+            ]
     return found
 
 
-def unavoidable_join_on_loops(cells: Sequence[PaintedLoops], joinable: Joinable) -> Strand | None:
+def unavoidable_join_on_loops(cells: PaintedLoops, joinable: Joinable) -> Strand | None:
     """Rule 5 loop by loop: an edge in state 0 that has to show one joinable color on both sides.
 
     A loop without darts in state 1 lies in one sub-cell of its cell, whichever suits, and all its
@@ -215,9 +206,9 @@ def unavoidable_join_on_loops(cells: Sequence[PaintedLoops], joinable: Joinable)
     """
     settled: list[PaintedCell] = []
     open_loops: list[tuple[PaintedCell, list[int]]] = []
-    for cell in cells:
-        colors = sorted(set(cell.loops[0].colors))
-        for loop in cell.loops:
+    for loops in cells.values():
+        colors = sorted(set(loops[0].colors))
+        for loop in loops:
             if loop.block_of:
                 settled.append(loop)
             else:

@@ -115,7 +115,7 @@ class Matching(ABC):
             nearest: (k, s, s) how far other configurations are.
 
         Returns:
-            As :meth:`along`.
+            As :meth:`~cellcolor.configurations.matching.Matching.along`.
         """
 
     def along(self, edges: Index, deadline: Deadline) -> tuple[Index, Array]:

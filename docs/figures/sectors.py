@@ -41,7 +41,7 @@ def main(folder: Path) -> None:
         for own, color in zip(DARTS, COLORS, strict=True)
     ]
     whole = [[Block(color_of[n], {number_of[-n - 1, 1]})] for n in range(10)]
-    colors, _ = sector_colors(model.sectors, [blocks, *whole])
+    colors = sector_colors(model.sectors, [blocks, *whole])
     figure = Figure(figsize=(7.2, 3.8), layout="constrained")
     areas, drawn = panels(figure, "five sub-cells of a cell", "two rings of sectors and a center")
     _areas(areas)

@@ -18,7 +18,6 @@ from library import PAPER
 from meshes import surfaces
 
 from cellcolor.checker.claimed_numbers import claims, segments_of_whole_cells
-from cellcolor.checker.cutting_paths import cutting_paths
 from cellcolor.checker.division import check_solution
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell
@@ -34,7 +33,7 @@ from cellcolor.lab.families import blobs
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
-NUMBERS = ("segments", "lift_offs", "lower_bound", "surface_lower_bound", "cutting_paths")
+NUMBERS = ("segments", "lift_offs", "lower_bound", "surface_lower_bound")
 
 
 FIGURES = ("annulus", "parallel-corridors", "ring", "split-cell", "three-loops")
@@ -49,10 +48,7 @@ def solved(case: int | str, paper: bool) -> tuple[Instance, Solution]:
         instance = Instance.read(PAPER / f"{case}.json")
     if not paper:
         return instance, solve(instance, Options("surface", 2, workers=1))
-    found = solve(instance, Options(workers=1))
-    assert found.cells is not None
-    paths = cutting_paths(instance, found.cells, found.seams)
-    return instance, replace(found, cutting_paths=paths, cutting_paths_lower_bound=0)
+    return instance, solve(instance, Options(workers=1))
 
 
 SOLVED = st.builds(solved, st.integers(0, 5) | st.sampled_from(FIGURES), st.booleans())
@@ -103,8 +99,6 @@ def test_nothing_found_claims_little(
         lift_offs=None,
         cells=None,
         seams=(),
-        cutting_paths=None,
-        cutting_paths_lower_bound=0,
         lower_bound=bound,
         surface_lower_bound=bound,
         bounds=(Bound("cover", bound, "surface"),),
@@ -199,13 +193,6 @@ UNKNOWN: dict[str, object] = {
             "lower_bound: says 2, the greatest of bounds is 3",
         ),
         ({"bounds": (Bound("model", 2, "strands"),)}, "surface_lower_bound: says 2"),
-        ({"cutting_paths": 7, "cutting_paths_lower_bound": 0}, "cutting_paths: says 7"),
-        (
-            {"cutting_paths": 1, "cutting_paths_lower_bound": 2},
-            "cutting_paths_lower_bound: 2 cannot be above the 1 found",
-        ),
-        ({"cutting_paths": 1}, "cutting_paths: goes with"),
-        ({"cutting_paths_lower_bound": 1}, "cutting_paths: goes with"),
         ({"schemes": 1}, "schemes: goes with complete"),
         ({"complete": True}, "schemes: goes with complete"),
         ({"schemes": 0, "complete": True}, "schemes: cannot be 0 and complete"),
@@ -227,8 +214,6 @@ UNKNOWN: dict[str, object] = {
         ),
         (UNKNOWN | {"surface_lower_bound": 10**9}, "surface_lower_bound: 1000000000 cannot"),
         (UNKNOWN | {"seams": (Seam(99, 0, 1, 3, 1),)}, "seams: there are none"),
-        (UNKNOWN | {"cutting_paths": 0}, "cutting_paths: cannot be known"),
-        (UNKNOWN | {"cutting_paths_lower_bound": 1}, "cutting_paths: cannot be known"),
     ],
 )
 def test_contradictions_are_refused(change: dict[str, object], expected: str) -> None:
@@ -239,14 +224,12 @@ def test_contradictions_are_refused(change: dict[str, object], expected: str) ->
 def test_numbers_that_are_right() -> None:
     right = replace(
         split_solution(),
-        cutting_paths=1,
-        cutting_paths_lower_bound=1,
         schemes=1,
         complete=True,
         bounds=(Bound("cover", 2, "surface"),),
     )
     assert check_solution(SPLIT, right).problems == ()
-    nothing = replace(right, **UNKNOWN, cutting_paths=None, cutting_paths_lower_bound=0)  # type: ignore[arg-type]
+    nothing = replace(right, **UNKNOWN)  # type: ignore[arg-type]
     nothing = replace(nothing, schemes=0, complete=False)
     assert check_solution(SPLIT, nothing).problems == ()
 
@@ -263,7 +246,10 @@ def test_coverage_is_the_instance_s() -> None:
 
 
 def test_what_nobody_has_verified_is_named() -> None:
-    assert claims(SPLIT, split_solution()) == {
+    older = replace(split_solution(), cutting_paths=1, cutting_paths_lower_bound=1)
+    assert claims(SPLIT, older) == {
+        "cutting_paths": 1,
+        "cutting_paths_lower_bound": 1,
         "lower_bound": 2,
         "surface_lower_bound": 2,
         "status": "optimal",

@@ -180,14 +180,14 @@ TAKEN_OUT = [
     (
         "4, on each loop",
         DIVISION,
-        "_not_canonical(its.id, its.whole, its.loops)",
-        "_not_canonical(its.id, its.whole, [])",
+        "_not_canonical(cell_id, as_one(own), own)",
+        "_not_canonical(cell_id, as_one(own), [])",
         "all alike, one in a hole",
     ),
     (
         "4, no chain",
         RULES,
-        "if colors[one] == colors[other] and group[one] != group[other]",
+        "if colors[one] == colors[other] and groups.find(one) != groups.find(other)",
         "if False",
         "two loops",
     ),
@@ -232,7 +232,7 @@ TAKEN_OUT = [
         "5, loop by loop",
         RULES,
         "settled.append(loop)",
-        "settled.append(cell.whole)",
+        "settled.append(as_one(loops))",
         "last and first",
     ),
     (

@@ -232,8 +232,7 @@ def test_the_arm_is_drawn_and_moves(page_file: Path) -> None:
         assert len(set(seen)) == 3
         assert page.locator("#overlay .dot").count() == len(stand_in().trajectory.left_out) > 0
         page.locator("#legend button", has_text="left out").click()
-        page.wait_for_timeout(300)
-        assert page.locator("#overlay .dot:visible").count() == 0
+        page.locator("#overlay .dot").wait_for(state="hidden")
         assert faults == []
 
 

@@ -12,7 +12,7 @@ from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.division import check_solution
 from cellcolor.checker.drawable import can_be_drawn
-from cellcolor.checker.scheme_rules import PaintedCell, PaintedLoops, unavoidable_join_on_loops
+from cellcolor.checker.scheme_rules import PaintedCell, unavoidable_join_on_loops
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
@@ -130,7 +130,7 @@ def test_a_cell_with_many_loops_can_be_drawn() -> None:
 def test_loops_without_darts_in_state_1_are_tried_without_falling() -> None:
     """Each of them faces the next and has one color only; none continues."""
     loops = tuple(PaintedCell([(n, 1)], {}, [0]) for n in range(1, 1101))
-    cells = [PaintedLoops(n, (loop,)) for n, loop in enumerate(loops)]
+    cells = {n: [loop] for n, loop in enumerate(loops)}
     assert unavoidable_join_on_loops(cells, lambda _: frozenset()) is None
 
 

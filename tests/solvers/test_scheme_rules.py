@@ -120,7 +120,7 @@ DIVISIONS = "cellcolor.solvers.cpsat.cell_divisions"
 FRONTIER = "cellcolor.solvers.cpsat.frontier"
 SHOWN = "cellcolor.solvers.cpsat.shown_colors"
 CODES = "cellcolor.solvers.dfs.cell_schemes"
-ZEROS = "cellcolor.solvers.dfs.zeros"
+ZEROS = "cellcolor.solvers.dfs.search"
 
 RULES = [
     # What is taken out, where, the source with and without it, and the graph whose test falls.

@@ -8,7 +8,6 @@ round a sub-cell in any order. It can be drawn if some choice of these orders ha
 from __future__ import annotations
 
 import itertools
-import math
 import random
 from collections.abc import Iterator, Sequence
 from functools import cache
@@ -124,22 +123,6 @@ def segments(division: Sequence[Painted]) -> int:
 
 
 @cache
-def paths(loops: Loops, blocks: Blocks) -> int:
-    """The fewest curves between sub-cells: of all ways to group the loops, that with most groups.
-
-    What curves connect is one group, and groups and sub-cells have to hang together like a tree.
-    """
-    best = math.inf
-    for groups in set_partitions(range(len(loops))):
-        tree: nx.Graph[object] = nx.Graph()
-        for number, group in enumerate(groups):
-            darts = {dart for loop in group for dart in loops[loop]}
-            tree.add_edges_from((number, block) for block in blocks if block & darts)
-        if not tree or nx.is_forest(tree):
-            best = min(best, len(blocks) - 1 + len(loops) - len(groups))
-    return int(best) if loops else 0
-
-
 def optimal_schemes(instance: Instance) -> tuple[int, set[SchemeKey]]:
     """The fewest segments of any division, and the schemes among those that have so many."""
     best = len(instance.cells) * 100

@@ -9,12 +9,12 @@ docs/bounds.md.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from cellcolor.data.instance import Instance
 from cellcolor.solvers.bounds.cover import Region
-from cellcolor.solvers.bounds.merged_surface import PolygonSurface, merge_cells, spanning_tree
+from cellcolor.solvers.bounds.merged_surface import merge_cells
 from cellcolor.union_find import UnionFind
 
 MergedCell = frozenset[int]
@@ -51,30 +51,102 @@ class RegionPair:
     Attributes:
         first: what segments of the first region do to those of the second.
         second: what segments of the second region do to those of the first.
+        merged_cell_of: the merged cell of each cell of the regions.
+        cells: the cells of each merged cell.
+        loops: the live darts around each merged cell.
+        sides: the merged cells to the left and to the right of each edge and of each seam. Seams
+            connect the first loop of a merged cell to its others, so that it is a polygon.
+        seams: the seams of each merged cell.
+        before: the dart before each dart on its loop.
     """
 
     def __init__(self, instance: Instance, first: Region, second: Region) -> None:
         (color, near), (other, far) = first, second
-        both = frozenset((color, other))
         colors = dict.fromkeys(near - far, frozenset((color,)))
         colors |= dict.fromkeys(far - near, frozenset((other,)))
-        colors |= dict.fromkeys(near & far, both)
-        self._merged = merge_cells(instance, colors)
-        surface = PolygonSurface(self._merged)
+        colors |= dict.fromkeys(near & far, frozenset((color, other)))
+        merged = merge_cells(instance, colors)
+        self.merged_cell_of, self.loops = merged.merged_cell_of, merged.loops
+        self.cells, self.sides = merged.cells(), dict(merged.sides)
+        self.before: dict[int, int] = {}
+        self.seams: dict[int, list[int]] = {}
+        # The darts around each polygon, those of the seams among them, in cyclic order.
+        self._polygons: dict[int, list[int]] = {}
+        highest = max(self.sides, default=0)
+        for merged_cell, loops in self.loops.items():
+            self._polygons[merged_cell] = [*loops[0]] if loops else []
+            self.seams[merged_cell] = []
+            for loop in loops:
+                self.before |= zip(loop[1:] + loop[:1], loop, strict=True)
+            for loop in loops[1:]:
+                highest += 1
+                self._polygons[merged_cell] += [highest, *loop, -highest]
+                self.sides[highest] = merged_cell, merged_cell
+                self.seams[merged_cell].append(highest)
         ways = [
-            {edge for edge, shared in self._merged.joinable.items() if own in shared}
+            {edge for edge, shared in merged.joinable.items() if own in shared}
             for own in (color, other)
         ]
-        alone = [
-            sorted({self._merged.merged_cell_of[cell] for cell in cells})
-            for cells in (near - far, far - near)
-        ]
-        self.first = Side(surface, alone[0], alone[1], ways[0], ways[1])
-        self.second = Side(surface, alone[1], alone[0], ways[1], ways[0])
+        alone = [sorted({self.merged_cell_of[c] for c in own}) for own in (near - far, far - near)]
+        self.first = Side(self, alone[0], alone[1], ways[0], ways[1])
+        self.second = Side(self, alone[1], alone[0], ways[1], ways[0])
 
-    def merged_cell_of(self, cell: int) -> int:
-        """The merged cell that a cell is part of; -1 for one of neither region."""
-        return self._merged.merged_cell_of.get(cell, -1)
+    def borders(self) -> UnionFind[int]:
+        """The border curves, each as the darts after which it runs."""
+        borders: UnionFind[int] = UnionFind(self.before)
+        for dart in self.before:
+            # Where a dart ends, the border continues to what lies before the dart's other side.
+            borders.union(dart, self.before[-dart])
+        return borders
+
+    def turns(self, curves: Iterable[set[int]]) -> dict[int, int]:
+        """Which of some curves lie between the beginnings of two polygons with a common edge.
+
+        Args:
+            curves: each the edges and seams that it crosses an odd number of times.
+
+        Returns:
+            For each edge and seam the curves that a way crosses an odd number of times which leads
+            from where the polygon on the left begins, across the edge, to where the one on the
+            right begins, as the bits of a number. It does not matter where on the edge: a crossing
+            of the edge itself lies before that place in just one of the two polygons' lists.
+        """
+        crossed: dict[int, int] = {}
+        for number, curve in enumerate(curves):
+            for edge in curve:
+                crossed[edge] = crossed.get(edge, 0) | 1 << number
+        passed: dict[int, int] = {}
+        for polygon in self._polygons.values():
+            met = 0
+            for dart in polygon:
+                # As far as where the edge begins: that is where its other side ends.
+                passed[dart] = met if dart > 0 else met ^ crossed.get(-dart, 0)
+                met ^= crossed.get(abs(dart), 0)
+        return {edge: passed[edge] ^ passed[-edge] for edge in self.sides}
+
+    def independent(self, turns: Mapping[int, int]) -> list[int]:
+        """A largest set of given closed curves of which no combination is homologous to zero.
+
+        A curve is homologous to zero (modulo 2, borders filled with discs) if every closed curve
+        crosses it an even number of times. It is enough to test the fundamental cycles of the graph
+        of polygons. The curves are given by their :meth:`turns`.
+        """
+        tree = _spanning_tree(self.sides, self._polygons)
+        passed: dict[int, int] = {}
+        for polygon, (edge, nearer) in tree.items():
+            passed[polygon] = passed[nearer] ^ turns[edge] if edge else 0
+        used = {edge for edge, _ in tree.values()}
+        reduced: dict[int, int] = {}
+        for edge, (left, right) in self.sides.items():
+            if edge in used:
+                continue
+            met = turns[edge] ^ passed[left] ^ passed[right]
+            for bit, row in reduced.items():
+                if met >> bit & 1:
+                    met ^= row
+            if met:
+                reduced[met.bit_length() - 1] = met
+        return list(reduced)
 
 
 class Side:
@@ -91,7 +163,7 @@ class Side:
 
     def __init__(
         self,
-        surface: PolygonSurface,
+        surface: RegionPair,
         merged_cells: list[int],
         parted: list[int],
         own: set[int],
@@ -106,7 +178,7 @@ class Side:
         self._tree: dict[int, tuple[int, int]] = {}
         self._known: dict[tuple[int, int], list[Separation]] = {}
         if len(merged_cells) > 1 and len(parted) > 1:
-            self._tree = spanning_tree(self._own, merged_cells[:1])
+            self._tree = _spanning_tree(self._own, merged_cells[:1])
             self._around = self._circles()
             if len(self._around) <= MOST_CIRCLES:
                 self._wall = self._components(parted, other)
@@ -125,7 +197,7 @@ class Side:
 
     def _separations(self, near: int, far: int) -> list[Separation]:
         curves = [self._path(near) ^ self._path(far), *self._around]
-        turns = self._turns(curves)
+        turns = self._surface.turns(curves)
         cells = self._surface.cells
         found = []
         for merged_cells in self._wall:
@@ -173,16 +245,8 @@ class Side:
             for edge, (left, right) in self._own.items()
             if edge not in used and left in self._tree
         ]
-        turns = self._turns(circles)
+        turns = self._surface.turns(circles)
         return [circles[number] for number in self._surface.independent(turns)]
-
-    def _turns(self, curves: Sequence[set[int]]) -> dict[int, int]:
-        """Which of some curves a way crosses oddly over each edge, as the bits of a number."""
-        crossed: dict[int, int] = {}
-        for number, curve in enumerate(curves):
-            for edge in curve:
-                crossed[edge] = crossed.get(edge, 0) | 1 << number
-        return self._surface.turns(crossed)
 
     def _connected(self, wall: set[int], turns: Mapping[int, int], chosen: int) -> UnionFind[int]:
         """What ways connect, each merged cell in either parity: its name twice, plus the parity.
@@ -209,7 +273,7 @@ class Side:
         wall = self._surface.borders()
         for edge in other:
             wall.union(edge, self._surface.before[edge])
-        loops = self._surface.merged.loops
+        loops = self._surface.loops
         found: dict[int, list[int]] = {}
         for merged_cell in parted:
             wall.union(*(dart for loop in loops[merged_cell] for dart in loop))
@@ -217,3 +281,30 @@ class Side:
             if loops[merged_cell]:
                 found.setdefault(wall[loops[merged_cell][0][0]], []).append(merged_cell)
         return [merged_cells for merged_cells in found.values() if len(merged_cells) > 1]
+
+
+def _spanning_tree(
+    sides: Mapping[int, tuple[int, int]], nodes: Iterable[int]
+) -> dict[int, tuple[int, int]]:
+    """A spanning forest: the edge to each node from its parent, and that; 0 and itself for a root.
+
+    Args:
+        sides: the two nodes of each edge.
+        nodes: where to begin, one after the other, if not yet reached.
+    """
+    near: dict[int, list[tuple[int, int]]] = {}
+    for edge, (left, right) in sides.items():
+        near.setdefault(left, []).append((edge, right))
+        near.setdefault(right, []).append((edge, left))
+    tree: dict[int, tuple[int, int]] = {}
+    for root in nodes:
+        if root in tree:
+            continue
+        tree[root] = 0, root
+        order = [root]
+        for node in order:
+            for edge, beyond in near.get(node, ()):
+                if beyond not in tree:
+                    tree[beyond] = edge, node
+                    order.append(beyond)
+    return tree

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 Region = tuple[int, frozenset[int]]
 """A color region: the color, and its cells."""
 
+_Found = tuple[set[int] | None, int]
+"""The variables chosen, None if no solution was found in time; and the bound proved."""
+
 EFFORT = 5.0
 """Deterministic seconds for a cover; nearly all take a thousandth of that."""
 
@@ -43,25 +46,18 @@ class Cover:
     bound: int
 
 
-def color_regions(
-    instance: Instance, colors: Sequence[frozenset[int]] | None = None
-) -> list[Region]:
+def color_regions(instance: Instance) -> list[Region]:
     """Every color's region, split into components over the edges that are joinable for it.
 
     No segment reaches beyond one of these (docs/semantics.md, section 4).
 
     They come by color, those of one color by their smallest cell.
-
-    Args:
-        colors: the colors each cell may be painted in, if not all of its own.
     """
-    allowed = colors or [frozenset(cell.colors) for cell in instance.cells]
-    near: list[dict[int, list[int]]] = [{color: [] for color in own} for own in allowed]
+    near = [{color: list[int]() for color in cell.colors} for cell in instance.cells]
     for edge in instance.edges:
         for color in instance.joinable(edge.id):
-            if color in near[edge.left] and color in near[edge.right]:
-                near[edge.left][color].append(edge.right)
-                near[edge.right][color].append(edge.left)
+            near[edge.left][color].append(edge.right)
+            near[edge.right][color].append(edge.left)
     regions: list[Region] = []
     seen: set[tuple[int, int]] = set()
     for cell, own in enumerate(near):
@@ -79,24 +75,17 @@ def color_regions(
     return sorted(regions, key=lambda region: (region[0], min(region[1])))
 
 
-def set_cover(instance: Instance, deadline: Deadline = NEVER) -> Cover:
+def set_cover(regions: Sequence[Region], deadline: Deadline = NEVER) -> Cover:
     """A smallest set of color regions that touches every cell; its size is a lower bound.
 
     The regions of all segments together touch every cell, in both search spaces. After the deadline
     it is the best cover and bound so far.
     """
-    regions = color_regions(instance)
-    touching = _touching(regions, len(instance.cells))
+    touching = _touching(regions)
     greedy = _greedy(regions, touching)
-    found = _smallest(touching, EFFORT, deadline, greedy)
-    numbers = greedy if found.chosen is None else found.chosen
-    return Cover([regions[number] for number in sorted(numbers)], max(found.bound, bool(regions)))
-
-
-def smallest_cover(regions: Sequence[Region], cells: int) -> int:
-    """What is proved of the fewest regions that together touch cells 0, 1, 2, …"""
-    touching = _touching(regions, cells)
-    return _smallest(touching, EFFORT, NEVER, _greedy(regions, touching)).bound
+    numbers, bound = _smallest(touching, EFFORT, deadline, greedy)
+    chosen = greedy if numbers is None else numbers
+    return Cover([regions[number] for number in sorted(chosen)], max(bound, bool(regions)))
 
 
 def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> list[int] | None:
@@ -113,15 +102,16 @@ def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> li
     Returns:
         The cells, ascending; None if none were found in time.
     """
-    cells = greedy_independent_set(instance)
+    regions = color_regions(instance)
+    cells = greedy_independent_set(regions)
     if len(cells) >= value:
         return sorted(cells)[:value]
-    touching = _touching(color_regions(instance), len(instance.cells))
+    touching = _touching(regions)
     found: list[int] = []
     for group in sorted(_groups(touching), key=len):
         if value > 0 and not deadline.over:
             demands = [touching[cell] for cell in group]
-            need = min(value, _smallest(demands, CERTIFICATE_EFFORT, deadline).bound)
+            need = min(value, _smallest(demands, CERTIFICATE_EFFORT, deadline)[1])
             hard = _hard_cells_of(group, need, touching, deadline)
             if hard is None:
                 return None
@@ -142,11 +132,11 @@ def _hard_cells_of(
     hardest_first = sorted(group, key=lambda cell: len(touching[cell]))
     while not deadline.over:
         demands = [touching[cell] for cell in cells]
-        found = _smallest(demands, CERTIFICATE_EFFORT, deadline)
-        if found.bound >= value:
+        chosen, bound = _smallest(demands, CERTIFICATE_EFFORT, deadline)
+        if bound >= value:
             return cells
-        missed = (c for c in hardest_first if touching[c].isdisjoint(found.chosen or ()))
-        if found.chosen is None or (cell := next(missed, None)) is None:
+        missed = (c for c in hardest_first if touching[c].isdisjoint(chosen or ()))
+        if chosen is None or (cell := next(missed, None)) is None:
             return None
         cells.append(cell)
     return None
@@ -168,15 +158,14 @@ def _independent_set(
         if len(literals) > 1:
             model.add_at_most_one(literals)
     model.maximize(sum(chosen))
-    found = _solve(model, chosen, CERTIFICATE_EFFORT, deadline).chosen or ()
-    return [group[place] for place in sorted(found)]
+    found, _ = _solve(model, chosen, CERTIFICATE_EFFORT, deadline)
+    return [group[place] for place in sorted(found or ())]
 
 
-def greedy_independent_set(instance: Instance, without: Collection[int] = ()) -> list[int]:
-    """Cells of which no two lie in one color region without some others; not always the most."""
-    colors = [frozenset(() if c.id in without else c.colors) for c in instance.cells]
-    touching = _touching(color_regions(instance, colors), len(instance.cells))
-    return _apart((c for c in range(len(touching)) if c not in without), touching)
+def greedy_independent_set(regions: Sequence[Region]) -> list[int]:
+    """Cells of which no two lie in one color region; not always the most."""
+    touching = _touching(regions)
+    return _apart(range(len(touching)), touching)
 
 
 def _apart(cells: Iterable[int], touching: Sequence[set[int]]) -> list[int]:
@@ -200,9 +189,9 @@ def _groups(demands: Sequence[Collection[int]]) -> list[list[int]]:
     return sorted(map(sorted, together.sets()))
 
 
-def _touching(regions: Sequence[Region], cells: int) -> list[set[int]]:
+def _touching(regions: Sequence[Region]) -> list[set[int]]:
     """The numbers of the regions that each cell lies in."""
-    touching: list[set[int]] = [set() for _ in range(cells)]
+    touching: list[set[int]] = [set() for _ in frozenset[int]().union(*(r[1] for r in regions))]
     for number, (_, own) in enumerate(regions):
         for cell in own:
             touching[cell].add(number)
@@ -215,7 +204,7 @@ def _smallest(
     deadline: Deadline,
     hint: Collection[int] = (),
 ) -> _Found:
-    """A minimum hitting set: the fewest regions with at least one of each demand."""
+    """A minimum hitting set, the fewest regions with at least one of each demand."""
     from ortools.sat.python import cp_model  # slow to import, so only where it is used
 
     chosen: set[int] | None = set()
@@ -232,13 +221,11 @@ def _smallest(
         for number in own if hint else ():
             model.add_hint(literal[number], number in hint)
         model.minimize(sum(literal.values()))
-        found = _solve(model, list(literal.values()), effort, deadline)
-        bound += found.bound
-        if chosen is None or found.chosen is None:
-            chosen = None
-        else:
-            chosen |= {own[place] for place in found.chosen}
-    return _Found(chosen, bound)
+        found, least = _solve(model, list(literal.values()), effort, deadline)
+        bound += least
+        if chosen is not None:
+            chosen = None if found is None else chosen | {own[place] for place in found}
+    return chosen, bound
 
 
 def _greedy(regions: Sequence[Region], touching: Sequence[set[int]]) -> set[int]:
@@ -251,14 +238,6 @@ def _greedy(regions: Sequence[Region], touching: Sequence[set[int]]) -> set[int]
             chosen.add(best)
             covered |= regions[best][1]
     return chosen
-
-
-@dataclass(frozen=True, slots=True)
-class _Found:
-    """The variables chosen, None if no solution was found in time; and the bound proved."""
-
-    chosen: set[int] | None
-    bound: int
 
 
 def _solve(
@@ -279,6 +258,6 @@ def _solve(
     if interrupt is not None:
         raise interrupt
     if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-        return _Found(None, 0)
+        return None, 0
     picked = {n for n, literal in enumerate(chosen) if solver.boolean_value(literal)}
-    return _Found(picked, ceil(solver.best_objective_bound - 1e-6))
+    return picked, ceil(solver.best_objective_bound - 1e-6)

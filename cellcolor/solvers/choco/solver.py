@@ -22,7 +22,7 @@ from cellcolor.data.solution import ModelSize
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import CellcolorError, SolverMissing
 from cellcolor.processes import Child
-from cellcolor.solvers.bounds.cover import greedy_independent_set
+from cellcolor.solvers.bounds.cover import color_regions, greedy_independent_set
 from cellcolor.solvers.choco.model import Ranks
 from cellcolor.solvers.choco.problem import Problem
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
@@ -64,7 +64,7 @@ class ChocoSolver:
         model: ModelSize | None = None
         try:
             Problem.of(instance, deadline)  # what cannot be solved is refused here
-            fewest = len(greedy_independent_set(instance))
+            fewest = len(greedy_independent_set(color_regions(instance)))
             with tempfile.TemporaryDirectory(prefix="cellcolor-") as name:
                 folder = Path(name)
                 file = folder / "instance.json"
@@ -110,7 +110,9 @@ def _main(path: str, seconds: float) -> None:
         resource.setrlimit(resource.RLIMIT_DATA, (MOST_MEMORY, MOST_MEMORY))
     deadline = Deadline.after(seconds)
     instance = Instance.read(path)
-    built = Ranks(Problem.of(instance, deadline), len(greedy_independent_set(instance)))
+    built = Ranks(
+        Problem.of(instance, deadline), len(greedy_independent_set(color_regions(instance)))
+    )
     size = {"variables": built.variables, "constraints": built.constraints}
     print(json.dumps(size), flush=True)
     for solution in built.solutions(deadline.left):

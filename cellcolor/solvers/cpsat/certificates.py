@@ -6,7 +6,6 @@ from collections.abc import Iterable, Sequence
 from itertools import combinations, product
 
 from cellcolor.data.bound_kinds import CertifiedCrossing, CertifiedPart, CertifiedParts
-from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.part import Part
 
 MOST_CONFLICTS = 2_000
@@ -51,7 +50,7 @@ def _hardest(part: Part, conflicts: Sequence[CertifiedCrossing]) -> tuple[int, .
     A cell of none of these can be touched by whatever touches a cell that has no other regions.
     """
     regions: dict[int, set[int]] = {cell: set() for cell in part.cells}
-    for number, (_, own) in enumerate(color_regions(part.instance)):
+    for number, (_, own) in enumerate(part.regions):
         for cell in own:
             regions[part.cells[cell]].add(number)
     ends: dict[int, set[tuple[int, int]]] = {cell: set() for cell in part.cells}

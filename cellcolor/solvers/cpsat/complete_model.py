@@ -15,10 +15,14 @@ from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.bounds.crossings import enough_crossings
 from cellcolor.solvers.cpsat.dart_graph import complete_graph, dart_graph
-from cellcolor.solvers.cpsat.drawing import moved, seamed
 from cellcolor.solvers.cpsat.formulation import SectorModel
-from cellcolor.solvers.cpsat.painting import Block, canonical, division_of, painting_of
-from cellcolor.solvers.cpsat.parts import loops_of, seam_places
+from cellcolor.solvers.cpsat.painting import (
+    Block,
+    canonical,
+    division_of,
+    moved,
+    painting_of,
+)
 from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
 
@@ -54,27 +58,24 @@ class CompleteModel(SectorModel):
         deadline: Deadline = NEVER,
     ) -> None:
         self.instance, self.strands = instance, strands
-        self._loops = loops_of(instance)
-        self._places = seam_places(instance, self._loops)
         self._each = dict.fromkeys(instance.live_edges, strands)
-        self._graph = complete_graph(instance, self._each, self._loops, self._places)
-        super().__init__(self._graph, color_regions(instance), MOST_LITERALS, groups, deadline)
+        graph = complete_graph(instance, self._each)
+        super().__init__(graph, color_regions(instance), MOST_LITERALS, groups, deadline)
         self.hint(self._whole())
 
     def begin_with(self, start: Start) -> None:
         """Hint a division, in the place of what is hinted."""
-        graph = dart_graph(self.instance, self._each, start.seams, self._loops)
-        painting = moved(graph, painting_of(graph, start.division), self._graph)
+        graph = dart_graph(self.instance, self._each, start.seams)
+        painting = moved(graph, painting_of(graph, start.division), self.sectors.graph)
         self.model.clear_hints()  # type: ignore[no-untyped-call]
-        self.hint(canonical(self._graph, painting))
+        self.hint(canonical(self.sectors.graph, painting))
 
     def read(self, solver: cp_model.CpSolver) -> tuple[Division, tuple[Seam, ...]]:
         """The division that a solver has found, and the seams that its darts refer to."""
-        painting = canonical(self._graph, self.painting(solver))
-        graph, painting = seamed(
-            self.instance, self._each, self._graph, painting, self._loops, self._places
-        )
-        return division_of(graph, painting, self.strands), graph.seams
+        graph = self.sectors.graph
+        return division_of(
+            graph, canonical(graph, self.painting(solver)), self.strands
+        ), graph.seams
 
     def _whole(self) -> list[list[Block]]:
         """Every cell painted whole, each in the color of its largest color region."""
@@ -83,7 +84,7 @@ class CompleteModel(SectorModel):
             max(cell.colors, key=lambda color, cell=cell: size[cell.id, color])  # type: ignore[misc]
             for cell in self.instance.cells
         ]
-        return canonical(self._graph, [[Block(color, set())] for color in chosen])
+        return canonical(self.sectors.graph, [[Block(color, set())] for color in chosen])
 
 
 class CompleteModelSolver:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from ortools.sat.python import cp_model
 
-from cellcolor.solvers.bounds.cover import smallest_cover
+from cellcolor.solvers.bounds.cover import set_cover
 from cellcolor.solvers.bounds.grouping import best_grouping
 from cellcolor.union_find import UnionFind
 
@@ -34,13 +34,10 @@ def add_variables(m: SectorModel, *, only_centers: bool) -> None:
             v.color[sector, c] = (
                 m.true if len(colors) == 1 else model.new_bool_var(f"color[{name},{c}]")
             )
-            if not only_centers or sector == sectors.center(cell):
+            if not only_centers or sector == sectors.nodes[cell][-1]:
                 v.root[sector, c] = model.new_bool_var(f"root[{name},{c}]")
         most = max(size[m.region_of[cell, c]] for c in colors)
         v.rank.append(model.new_int_var(0, most - 1, f"rank[{name}]"))
-    for lone, hosts in sectors.hosts.items():
-        for host in hosts:
-            v.attached[lone, host] = model.new_bool_var(f"attached[{lone},{host}]")
     for here, own in enumerate(m.deadline.watch(m.neighbors)):
         for there in own:
             v.parent[here, there] = model.new_bool_var(f"parent[{here},{there}]")
@@ -79,21 +76,8 @@ def no_circles(m: SectorModel) -> None:
         m.model.add(v.rank[here] >= v.rank[there] + 1).only_enforce_if(literal)
 
 
-def one_host(m: SectorModel) -> None:
-    """(5) A lone dart is attached to one sector of its cell at most, in one color with it."""
-    v = m.variables
-    for lone, hosts in m.sectors.hosts.items():
-        m.model.add_at_most_one(v.attached[lone, host] for host in hosts)
-        for host in hosts:
-            attached = v.attached[lone, host]
-            m.model.add_implication(v.parent[lone, host], attached)
-            m.model.add_implication(v.parent[host, lone], attached)
-            for c in sorted(m.colors(lone)):
-                m.model.add_bool_or([~attached, ~v.color[lone, c], v.color[host, c]])
-
-
 def undivided(m: SectorModel) -> None:
-    """(6) A root is the center of an undivided cell.
+    """(5) A root is the center of an undivided cell.
 
     That no other sector can be one is said by ``add_variables``.
     """
@@ -104,14 +88,14 @@ def undivided(m: SectorModel) -> None:
 
 
 def fixed_roots(m: SectorModel) -> None:
-    """(7) A region with one-colored cells has a root in one of them, whichever is chosen."""
+    """(6) A region with one-colored cells has a root in one of them, whichever is chosen."""
     for number, cell in m.fixed_root.items():
-        root = m.variables.root[m.sectors.center(cell), m.regions[number][0]]
+        root = m.variables.root[m.sectors.nodes[cell][-1], m.regions[number][0]]
         m.model.add_bool_or([root])
 
 
 def regions_in_use(m: SectorModel) -> None:
-    """(8) A region in use has a root, and each cell lies in a region in use."""
+    """(7) A region in use has a root, and each cell lies in a region in use."""
     model, v = m.model, m.variables
     for (sector, c), literal in m.deadline.watch(v.color.items()):
         model.add_implication(literal, m.used[m.region_of[m.sectors.cell[sector], c]])
@@ -125,14 +109,14 @@ def regions_in_use(m: SectorModel) -> None:
 
 
 def cover(m: SectorModel) -> None:
-    """(9) There are as many regions in use as a smallest set cover has, and as many segments."""
-    m.fewest_regions = smallest_cover(m.regions, len(m.sectors.nodes))
+    """(8) There are as many regions in use as a smallest set cover has, and as many segments."""
+    m.fewest_regions = set_cover(m.regions).bound
     m.model.add(sum(m.used) >= m.fewest_regions)
     m.model.add(sum(m.variables.root.values()) >= m.fewest_regions)
 
 
 def company(m: SectorModel) -> None:
-    """(10) Each sector is a root, or has a neighbor of its color."""
+    """(9) Each sector is a root, or has a neighbor of its color."""
     v = m.variables
     for (sector, c), literal in m.deadline.watch(v.color.items()):
         near = [v.color[other, c] for other, own in m.neighbors[sector].items() if c in own]
@@ -141,7 +125,7 @@ def company(m: SectorModel) -> None:
 
 
 def euler(m: SectorModel) -> None:
-    """(11) Euler's formula: there are as many segments as borders divide the surface into.
+    """(10) Euler's formula: there are as many segments as borders divide the surface into.
 
     Where b border lines meet at a face of the sector graph, they add (b - 2) / 2 regions.
     """
@@ -156,13 +140,13 @@ def euler(m: SectorModel) -> None:
     faces = sectors.faces[1] + alone
     characteristic = len(sectors.cell) - len(sectors.links) + faces
     m.model.add(
-        2 * (sum(v.root.values()) + sum(v.attached.values()))
+        2 * sum(v.root.values())
         >= 2 * (characteristic - len(parts) + sum(parts.values())) + sum(m.surplus.values())
     )
 
 
 def connections(m: SectorModel) -> None:
-    """(12) No cell has more connections than its best grouping of darts.
+    """(11) No cell has more connections than its best grouping of darts.
 
     A cell with s sub-cells has as many connections as joined darts less s. By Euler's formula in
     the cell, s is half of 2, its surplus and the changes of color along its border together.
@@ -176,23 +160,23 @@ def connections(m: SectorModel) -> None:
     for face, surplus in m.surplus.items():
         if len(inside[face]) == 1 and -1 not in inside[face]:
             own.setdefault(inside[face].pop(), []).append(surplus)
-    for cell, loops in enumerate(graph.loops):
+    for cell, darts in enumerate(graph.lists):
         if not sectors.rings[cell]:
             continue
-        colors = [graph.darts[dart].colors for dart in loops[0]]
+        colors = [graph.darts[dart].colors for dart in darts]
         most = best_grouping(colors, m.deadline).connections
-        joined = [1 - m.apart[m.link_at[dart]][0] for dart in loops[0]]
+        joined = [1 - m.apart[m.link_at[dart]][0] for dart in darts]
         changes = [m.apart[link][0] for link in m.ring_of[cell]]
         m.model.add(sum(own.get(cell, [])) + 2 + sum(changes) >= 2 * (sum(joined) - most))
 
 
 def zeros(m: SectorModel) -> None:
-    """(13) The color changes along a cell's border only at a joined dart.
+    """(12) The color changes along a cell's border only at a joined dart.
 
     A dart in state 0 shows the color of the sub-cell before it.
     """
     for cell, ring in m.ring_of.items():
-        for place, dart in enumerate(m.sectors.graph.loops[cell][0]):
+        for place, dart in enumerate(m.sectors.graph.lists[cell]):
             m.model.add_implication(m.apart[ring[place - 1]][0], ~m.apart[m.link_at[dart]][0])
 
 
@@ -201,7 +185,6 @@ DEFINING: Mapping[str, Callable[[SectorModel], None]] = {
     "parent or root": parent_or_root,
     "parent of one color": parent_of_one_color,
     "no circles": no_circles,
-    "one host": one_host,
 }
 
 REDUNDANT: Mapping[str, Callable[[SectorModel], None]] = {

@@ -8,16 +8,16 @@ code. This is on purpose: the others reveal a mistake made in only one of the th
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
-from cellcolor.data.cells_and_edges import Strand
+from cellcolor.data.cells_and_edges import Cell, Edge, Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Seam
 from cellcolor.errors import TooLarge
-from cellcolor.solvers.cpsat.parts import Loops, loops_of, seam_places
+from cellcolor.union_find import UnionFind
 
 MOST_STRANDS = 100_000
 """The most strands of seams in a complete graph."""
@@ -66,72 +66,9 @@ class DartGraph:
         """The index of each dart by its name."""
         return {dart.name: number for number, dart in enumerate(self.darts)}
 
-    @property
-    def edges(self) -> list[int]:
-        """One dart of every strand: the one with the lower index."""
-        return [number for number, dart in enumerate(self.darts) if number < dart.twin]
-
-
-def enough_strands(counts: Sequence[int]) -> list[int]:
-    """Strands for the seams of a cell that leave its minimum unchanged (semantics, section 5).
-
-    All of them leave from one corner of the first loop.
-
-    Args:
-        counts: the live darts of each of its loops, strands counted.
-
-    Returns:
-        Strands of the seam to the second, third, … loop.
-    """
-    live = sum(count > 0 for count in counts)
-    enough = max(0, sum(counts) // 2 - (live == 2))
-    return [enough if live > 1 and count else 0 for count in counts[1:]]
-
-
-def seams_of(instance: Instance, strands: Mapping[int, int], most: int | None) -> tuple[Seam, ...]:
-    """Seams from the first live loop of every cell to its other live loops; see ``widened``."""
-    loops = loops_of(instance)
-    return widened(instance, strands, loops, seam_places(instance, loops), most)
-
-
-def widened(
-    instance: Instance,
-    strands: Mapping[int, int],
-    loops: Loops,
-    places: Sequence[Seam],
-    most: int | None,
-    *,
-    lone: bool = False,
-) -> tuple[Seam, ...]:
-    """Seams with as many strands as are ever needed.
-
-    Args:
-        strands: strands of each live edge.
-        loops: the loops between which seams run.
-        places: where they run, in the order of cells and loops.
-        most: no seam gets more strands than this; None for as many as are ever needed.
-        lone: whether further loops with a single live dart get no strands, and count for none.
-    """
-    left = iter(places)
-    seams: list[Seam] = []
-    for own in loops:
-        if len(own) < 2:
-            continue
-        counts = [sum(strands[abs(d)] for d in loop if instance.joinable(d)) for loop in own]
-        if lone:
-            counts[1:] = [0 if count == 1 else count for count in counts[1:]]
-        widths = [count if most is None else min(count, most) for count in enough_strands(counts)]
-        seams += [replace(next(left), strands=width) for width in widths]
-    return tuple(seams)
-
 
 def dart_graph(
-    instance: Instance,
-    strands: Mapping[int, int],
-    seams: Sequence[Seam] | None,
-    loops: Loops | None = None,
-    *,
-    lone: bool = False,
+    instance: Instance, strands: Mapping[int, int], seams: Sequence[Seam] | None
 ) -> DartGraph:
     """Put strands and seams into the instance's loops and leave out what is dead.
 
@@ -139,99 +76,124 @@ def dart_graph(
         strands: strands of each live edge.
         seams: one for each further loop of a cell, all from the cell's first loop; None leaves the
             loops apart.
-        loops: the loops of each cell between which its seams run; None for its live ones.
-        lone: whether a further loop with a single live dart stays apart, without a seam.
     """
-    loops = loops_of(instance) if loops is None else loops
-    found: list[tuple[Strand, int, frozenset[int]]] = []
-    lists: list[tuple[tuple[int, ...], ...]] = []
-    seams_of: dict[int, list[Seam]] = {}
-    for seam in seams or ():
-        seams_of.setdefault(seam.cell, []).append(seam)
     colors = tuple(frozenset(cell.colors) for cell in instance.cells)
-    joinable_of = {edge: frozenset(instance.joinable(edge)) for edge in instance.live_edges}
-    for cell, own in zip(instance.cells, loops, strict=True):
-        between = None if seams is None else seams_of.get(cell.id, [])
-        apart = [
-            lone and sum(strands[abs(d)] for d in loop if instance.joinable(d)) == 1
-            for loop in own[1:]
-        ]
-        walks = _walks(own, between, apart)
+    joinable = {edge: frozenset(instance.joinable(edge)) for edge in instance.live_edges}
+    count = dict(strands)
+    seams_of: list[list[int]] = [[] for _ in colors]
+    for seam in seams or ():
+        seams_of[seam.cell].append(seam.id)
+        joinable[seam.id], count[seam.id] = colors[seam.cell], seam.strands
+    found: list[tuple[Strand, int]] = []
+    lists: list[tuple[tuple[int, ...], ...]] = []
+    for cell, loops in enumerate(_loops(instance)):
         cyclic = []
-        for walk in walks:
+        for walk in loops if seams is None else [_walk(loops, seams_of[cell])]:
             first = len(found)
-            for dart, through in walk:
-                if through is None:
-                    shared = joinable_of.get(abs(dart), frozenset())
-                    count = strands[abs(dart)] if shared else 0
-                else:
-                    shared, count = colors[cell.id], through.strands
-                numbers = range(1, count + 1)
+            for dart in walk:
+                numbers = range(1, count[abs(dart)] + 1)
                 order = numbers if dart > 0 else reversed(numbers)
-                found += [((dart, strand), cell.id, shared) for strand in order]
+                found += [((dart, strand), cell) for strand in order]
             cyclic.append(tuple(range(first, len(found))))
         lists.append(tuple(cyclic))
-    index = {name: number for number, (name, _, _) in enumerate(found)}
-    darts = tuple(Dart(name, cell, index[-name[0], name[1]], own) for name, cell, own in found)
+    index = {name: number for number, (name, _) in enumerate(found)}
+    darts = tuple(
+        Dart(name, cell, index[-name[0], name[1]], joinable[abs(name[0])]) for name, cell in found
+    )
     return DartGraph(darts, tuple(lists), colors, tuple(seams or ()))
 
 
-def complete_graph(
-    instance: Instance,
-    strands: Mapping[int, int],
-    loops: Loops,
-    places: Sequence[Seam],
-) -> DartGraph:
-    """The graph in which every scheme can be drawn: seams as wide as needed, lone darts apart.
+def widened(
+    instance: Instance, strands: Mapping[int, int], most: int | None = None
+) -> tuple[Seam, ...]:
+    """Seams from the first live loop of every cell to its other live loops.
+
+    They have as many strands as leave the cell's minimum unchanged (semantics, section 5).
 
     Args:
-        strands: of each live edge.
-        loops: the loops of each cell between which its seams run.
-        places: where they run, in the order of cells and loops.
+        strands: strands of each live edge.
+        most: no seam gets more strands than this.
 
     Raises:
-        TooLarge: seams would need too many strands.
+        TooLarge: the seams would need too many strands.
     """
-    seams = widened(instance, strands, loops, places, None, lone=True)
-    count = sum(seam.strands for seam in seams)
-    if count > MOST_STRANDS:
-        message = f"{count} strands of seams, {MOST_STRANDS} are the most"
+    widths: list[int] = []
+    for own in _loops(instance):
+        darts = sum(strands[abs(dart)] for loop in own for dart in loop)
+        enough = max(0, darts // 2 - (len(own) == 2))
+        widths += [enough if most is None else min(enough, most) for _ in own[1:]]
+    if sum(widths) > MOST_STRANDS:
+        message = f"{sum(widths)} strands of seams, {MOST_STRANDS} are the most"
         raise TooLarge(f"The model was not built: it would need {message}.")
-    return dart_graph(instance, strands, seams, loops, lone=True)
+    return with_strands(seam_places(instance), widths)
 
 
-def _walks(
-    loops: Sequence[tuple[int, ...]], seams: Sequence[Seam] | None, apart: Sequence[bool]
-) -> list[list[tuple[int, Seam | None]]]:
-    """The lists of a cell: one that seams make, and the loops that stay apart.
+def with_strands(seams: Iterable[Seam], widths: Iterable[int]) -> tuple[Seam, ...]:
+    """Seams with a number of strands each."""
+    return tuple(replace(seam, strands=w) for seam, w in zip(seams, widths, strict=True))
 
-    Args:
-        seams: one for each loop but the first; None if all of them stay apart.
-        apart: whether each loop but the first does.
+
+def complete_graph(instance: Instance, strands: Mapping[int, int]) -> DartGraph:
+    """The graph in which every scheme can be drawn: with seams as wide as needed.
+
+    Raises:
+        TooLarge: they would need too many strands.
     """
-    if seams is None:
-        return [_unseamed(loop) for loop in loops]
-    others = list(zip(loops[1:], seams, apart, strict=True)) if loops else []
-    seamed = [loop for loop, _, own in others if not own]
-    through = [seam for _, seam, own in others if not own]
-    return [
-        _walk([*loops[:1], *seamed], through),
-        *(_unseamed(loop) for loop, _, own in others if own),
-    ]
+    return dart_graph(instance, strands, widened(instance, strands))
 
 
-def _unseamed(loop: Sequence[int]) -> list[tuple[int, Seam | None]]:
-    return [(dart, None) for dart in loop]
+def seam_places(instance: Instance) -> tuple[Seam, ...]:
+    """Seams from the first live loop of every cell to its other live loops, without strands."""
+    seams: list[Seam] = []
+    number = max((edge.id for edge in instance.edges), default=0)
+    for cell, loops in enumerate(_loops(instance)):
+        for loop in loops[1:]:
+            number += 1
+            seams.append(Seam(number, cell, loops[0][0], loop[0], 0))
+    return tuple(seams)
 
 
-def _walk(loops: Sequence[tuple[int, ...]], seams: Sequence[Seam]) -> list[tuple[int, Seam | None]]:
-    """A cell's darts in one cyclic list, its seams with them."""
+def split(instance: Instance) -> list[tuple[Instance, list[int]]]:
+    """The parts of an instance that live edges connect, the smallest first.
+
+    Segments never reach from one into another, so their minima and bounds add up.
+
+    Returns:
+        For each part its cells, renumbered in their order, with their live edges under their own
+        ids; and the number that each of these cells has in the whole.
+    """
+    connected = UnionFind(range(len(instance.cells)))
+    for edge in instance.live_edges:
+        connected.union(instance.edge(edge).left, instance.edge(edge).right)
+    loops = _loops(instance)
+    parts = []
+    for cells in sorted(map(sorted, connected.sets()), key=len):
+        number = {cell: place for place, cell in enumerate(cells)}
+        own = [instance.edge(dart) for c in cells for loop in loops[c] for dart in loop if dart > 0]
+        edges = tuple(
+            Edge(e.id, number[e.left], number[e.right], instance.joinable(e.id))
+            for e in sorted(own, key=lambda edge: edge.id)
+        )
+        within = tuple(
+            Cell(place, instance.cells[cell].colors, tuple(loops[cell]))
+            for cell, place in number.items()
+        )
+        parts.append((Instance(instance.name, instance.colors, within, edges), cells))
+    return parts
+
+
+def _loops(instance: Instance) -> list[list[tuple[int, ...]]]:
+    """The live loops of each cell. All seams of a cell leave from the longest one, the first."""
+    return [sorted(own, key=len, reverse=True) for own in instance.live_loops]
+
+
+def _walk(loops: Sequence[tuple[int, ...]], seams: Sequence[int]) -> list[int]:
+    """A cell's loops in one cyclic list, its seams with them."""
     if not loops:
         return []
-    base, *others = loops
-    walk = _unseamed(base[1:])
+    (first, *rest), *others = loops
     for seam, loop in zip(seams, others, strict=True):
         # Every seam leaves after the first dart of the first loop, so the last one is met first,
         # and arrives after the first dart of the other.
-        walk[:0] = [(seam.id, seam), *_unseamed(loop[1:] + loop[:1]), (-seam.id, seam)]
-    return [*_unseamed(base[:1]), *walk]
+        rest = [seam, *loop[1:], loop[0], -seam, *rest]
+    return [first, *rest]

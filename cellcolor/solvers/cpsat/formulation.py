@@ -6,7 +6,7 @@ each group of constraints.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -34,21 +34,19 @@ class Variables:
         parent: per two neighboring sectors: the second is the parent of the first.
         root: per sector and color: the sector is the root of its segment, in that color.
         rank: per sector: larger than its parent's.
-        attached: per lone dart's sector and host: the one is attached to the other.
     """
 
     color: dict[Pair, cp_model.IntVar] = field(default_factory=dict)
     parent: dict[Pair, cp_model.IntVar] = field(default_factory=dict)
     root: dict[Pair, cp_model.IntVar] = field(default_factory=dict)
     rank: list[cp_model.IntVar] = field(default_factory=list)
-    attached: dict[Pair, cp_model.IntVar] = field(default_factory=dict)
 
 
 class SectorModel:
     """The model on the sector graph of some cells.
 
     Args:
-        graph: the darts of the cells, lone darts apart.
+        graph: the darts of the cells.
         regions: the color regions of the cells.
         most_literals: for the colors of sectors; a larger model is not built.
         groups: the names of the ``REDUNDANT`` groups of constraints; None for all of them.
@@ -107,8 +105,7 @@ class SectorModel:
         for (sector, c), literal in v.color.items():
             if solver.boolean_value(literal):
                 colors[sector] = c
-        attached = {lone: h for (lone, h), own in v.attached.items() if solver.boolean_value(own)}
-        return painting_of_sectors(self.sectors, colors, attached)
+        return painting_of_sectors(self.sectors, colors)
 
     def hint(self, painting: Painting) -> None:
         """Hint a canonical painting of the dart graph: all variables, as far as it can be drawn.
@@ -116,8 +113,8 @@ class SectorModel:
         A segment without an undivided cell gets its root wherever it begins.
         """
         model, v = self.model, self.variables
-        colors, attached = sector_colors(self.sectors, painting)
-        parent, rank = self._trees(colors, attached)
+        colors = sector_colors(self.sectors, painting)
+        parent, rank = self._trees(colors)
         for (sector, c), literal in v.color.items():
             if len(self.colors(sector)) > 1:
                 model.add_hint(literal, colors[sector] == c)
@@ -127,12 +124,8 @@ class SectorModel:
             model.add_hint(literal, parent.get(here) == there)
         for sector, own in enumerate(v.rank):
             model.add_hint(own, rank[sector])
-        for (lone, host), literal in v.attached.items():
-            model.add_hint(literal, attached.get(lone) == host)
 
-    def _trees(
-        self, colors: Sequence[int], attached: Mapping[int, int]
-    ) -> tuple[dict[int, int], list[int]]:
+    def _trees(self, colors: Sequence[int]) -> tuple[dict[int, int], list[int]]:
         """The parent of each sector that is no root, and the rank of each."""
         sectors = self.sectors
         fixed = {(cell, self.regions[number][0]) for number, cell in self.fixed_root.items()}
@@ -141,7 +134,7 @@ class SectorModel:
 
         def order(sector: int) -> tuple[bool, bool, int]:
             cell = sectors.cell[sector]
-            center = whole[cell] and sector == sectors.center(cell)
+            center = whole[cell] and sector == sectors.nodes[cell][-1]
             return not (center and (cell, colors[sector]) in fixed), not center, sector
 
         parent: dict[int, int] = {}
@@ -153,20 +146,11 @@ class SectorModel:
             reached = [root]
             for here in reached:
                 for there, joinable in self.neighbors[here].items():
-                    if rank[there] >= 0 or colors[there] != colors[here]:
-                        continue
-                    if colors[here] not in joinable or not self._linked(here, there, attached):
-                        continue
-                    parent[there], rank[there] = here, rank[here] + 1
-                    reached.append(there)
+                    same = colors[there] == colors[here] and colors[here] in joinable
+                    if rank[there] < 0 and same:
+                        parent[there], rank[there] = here, rank[here] + 1
+                        reached.append(there)
         return parent, rank
-
-    def _linked(self, one: int, other: int, attached: Mapping[int, int]) -> bool:
-        """Whether two neighbors are linked, or one of them is attached to the other."""
-        hosts = self.sectors.hosts
-        if one in hosts and other in hosts[one]:
-            return attached.get(one) == other
-        return other not in hosts or one not in hosts[other] or attached.get(other) == one
 
     @cached_property
     def neighbors(self) -> list[dict[int, frozenset[int]]]:
@@ -176,9 +160,6 @@ class SectorModel:
             colors = self._joinable(one, dart)
             for here, there in ((one, other), (other, one)):
                 found[here][there] = found[here].get(there, frozenset()) | colors
-        for lone, hosts in self.sectors.hosts.items():
-            for host in hosts:
-                found[lone][host] = found[host][lone] = self._joinable(lone, -1)
         return found
 
     def _joinable(self, sector: int, dart: int) -> frozenset[int]:
@@ -255,7 +236,7 @@ class SectorModel:
         found: dict[int, list[int]] = {}
         for number, (one, _, dart) in enumerate(self.sectors.links):
             cell = self.sectors.cell[one]
-            if dart < 0 and len(found.get(cell, ())) < len(self.sectors.graph.loops[cell][0]):
+            if dart < 0 and len(found.get(cell, ())) < len(self.sectors.graph.lists[cell]):
                 found.setdefault(cell, []).append(number)
         return found
 

@@ -287,7 +287,7 @@ def recolor(
             painted whole, which makes a move several times quicker.
     """
     sectors = sector_graph(graph, rings)
-    search = Recoloring(sectors, sector_colors(sectors, painting)[0], rng, deadline)
+    search = Recoloring(sectors, sector_colors(sectors, painting), rng, deadline)
     fewest = len(segments_of(graph, painting))
     in_vain = 0
     while True:

@@ -12,9 +12,14 @@ from cellcolor.errors import InputError, TooLarge
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.cell_divisions import Blocks
 from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph
-from cellcolor.solvers.cpsat.drawing import moved
 from cellcolor.solvers.cpsat.frontier import Frontier
-from cellcolor.solvers.cpsat.painting import Painting, canonical, division_of, painting_of
+from cellcolor.solvers.cpsat.painting import (
+    Painting,
+    canonical,
+    division_of,
+    moved,
+    painting_of,
+)
 from cellcolor.solvers.cpsat.planarity import Planarity
 from cellcolor.solvers.interface import Options
 

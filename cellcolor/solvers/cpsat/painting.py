@@ -51,6 +51,30 @@ def painting_of(graph: DartGraph, division: Division) -> Painting:
     ]
 
 
+def moved(known: DartGraph, painting: Painting, target: DartGraph) -> Painting:
+    """A painting on another graph of the same cells.
+
+    Strands that the target does not know are cut; the two sides of a seam's strand are one sub-cell
+    then.
+    """
+    seams = {seam.id for seam in known.seams}
+    found: Painting = []
+    for blocks in painting:
+        block_of = {dart: number for number, b in enumerate(blocks) for dart in b.darts}
+        together = UnionFind(range(len(blocks)))
+        for dart, number in block_of.items():
+            name, twin = known.darts[dart].name, known.darts[dart].twin
+            if abs(name[0]) in seams and name not in target.number_of:
+                together.union(number, block_of[twin])
+        made: dict[int, Block] = {}
+        for number, block in enumerate(blocks):
+            one = made.setdefault(together[number], Block(block.color, set()))
+            names = (known.darts[dart].name for dart in block.darts)
+            one.darts |= {target.number_of[name] for name in names if name in target.number_of}
+        found.append(list(made.values()))
+    return found
+
+
 def segments_of(graph: DartGraph, painting: Painting) -> list[set[int]]:
     """The cells that each segment touches."""
     blocks = [block for cell in painting for block in cell]
@@ -74,9 +98,7 @@ def segments_of(graph: DartGraph, painting: Painting) -> list[set[int]]:
     return segments
 
 
-def canonical(
-    graph: DartGraph, painting: Painting, changed: Iterable[int] | None = None
-) -> Painting:
+def canonical(graph: DartGraph, painting: Painting) -> Painting:
     """Make a scheme of a legal painting, with no more segments (docs/semantics.md, section 3).
 
     Throughout, a dart in state 0 shows the color of the sub-cell before it in cyclic order; a loop
@@ -93,34 +115,22 @@ def canonical(
     paths than before either (docs/semantics.md, section 8).
 
     Args:
-        painting: what is legal on it.
-        changed: the cells in which it is not a scheme's yet; None for all of them, and to work on
-            the painting's own blocks. Cells that stay as they are keep their lists of blocks.
+        painting: what is legal on it; its own blocks are changed.
     """
-    made: dict[int, _Cell] = {}
-
-    def at(number: int) -> _Cell:
-        if number not in made:
-            own = painting[number]
-            if changed is not None:
-                own = [Block(block.color, set(block.darts)) for block in own]
-            made[number] = _Cell(graph.loops[number], own)
-        return made[number]
-
-    first = range(len(painting)) if changed is None else sorted(changed)
-    waiting = dict.fromkeys(reversed(first))
+    cells = [_Cell(*own) for own in zip(graph.loops, painting, strict=True)]
+    waiting = dict.fromkeys(reversed(range(len(cells))))
     while waiting:
         number, _ = waiting.popitem()
-        cell = at(number)
+        cell = cells[number]
         for dart in graph.lists[number]:
             if dart in cell.block_of:
                 continue
             twin = graph.darts[dart].twin
             beyond = graph.darts[twin].cell
-            one, its = cell.shown(dart), at(beyond).shown(twin)
+            one, its = cell.shown(dart), cells[beyond].shown(twin)
             if one.color == its.color and one.color in graph.darts[dart].colors:
                 cell.add(dart, one)
-                at(beyond).add(twin, its)
+                cells[beyond].add(twin, its)
                 if len(graph.loops[beyond]) > 1:
                     waiting[beyond] = None  # another sub-cell may be its first one now
         cell.merge()
@@ -129,12 +139,9 @@ def canonical(
             twin = graph.darts[single].twin
             beyond = graph.darts[twin].cell
             cell.remove(single)
-            at(beyond).remove(twin)
+            cells[beyond].remove(twin)
             waiting[number] = waiting[beyond] = None
-    found = list(painting)
-    for number, cell in made.items():
-        found[number] = cell.blocks()
-    return found
+    return [cell.blocks() for cell in cells]
 
 
 class _Cell:

@@ -1,6 +1,6 @@
 """A part of the instance: its best division so far, what is proved of it, and the steps to more.
 
-A part is what live edges connect (``parts``). Each step takes a deadline, and raises ``OutOfTime``
+A part is what live edges connect. Each step takes a deadline, and raises ``OutOfTime``
 when that comes first; what it has found by then is kept.
 """
 
@@ -13,18 +13,17 @@ from random import Random
 
 from ortools.sat.python import cp_model
 
-from cellcolor.data.solution import ModelSize, Seam
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import ModelSize
 from cellcolor.deadline import Deadline
 from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds.cover import Region, color_regions, greedy_independent_set, set_cover
 from cellcolor.solvers.bounds.crossings import enough_crossings
 from cellcolor.solvers.cpsat.dart_graph import DartGraph, complete_graph, dart_graph, widened
-from cellcolor.solvers.cpsat.drawing import moved, seamed
-from cellcolor.solvers.cpsat.exact_shapes import exact_minimum
+from cellcolor.solvers.cpsat.exact_shapes import exact_minimum, painting_of_areas
 from cellcolor.solvers.cpsat.formulation import SectorModel
 from cellcolor.solvers.cpsat.local_search import recolor
-from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, segments_of
-from cellcolor.solvers.cpsat.parts import ConnectedPart
+from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, moved, segments_of
 from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.cpsat.segment_plans import Planner, SegmentPlan, Undecided
 from cellcolor.solvers.interface import Options
@@ -67,14 +66,18 @@ class Part:
     """
 
     def __init__(
-        self, part: ConnectedPart, options: Options, runner: Runner, report: Callable[[], None]
+        self,
+        instance: Instance,
+        cells: list[int],
+        options: Options,
+        runner: Runner,
+        report: Callable[[], None],
     ) -> None:
-        self._part, self._options, self._runner, self._report = part, options, runner, report
-        self.instance, self.cells = part.instance, part.cells
-        self._colors = tuple(frozenset(cell.colors) for cell in part.instance.cells)
-        self._enough = enough_crossings(part.instance)
+        self.instance, self.cells = instance, cells
+        self._options, self._runner, self._report = options, runner, report
+        self._enough = enough_crossings(instance)
         self._once = dict.fromkeys(self._enough, 1)
-        self.bound = self.surface_bound = len(greedy_independent_set(part.instance))
+        self.bound = self.surface_bound = len(greedy_independent_set(self.regions))
         self.by = "strangers"
         self.cover_bound = self.bound
         self.planner: Planner | None = None
@@ -82,7 +85,7 @@ class Part:
         self.notes: list[str] = []
         self._planned: Sequence[Region] = self.regions
         self._running: int | None = None
-        self.best = self._whole([min(own) for own in self._colors])
+        self.best = self._whole([min(cell.colors) for cell in instance.cells])
         self.segments = len(segments_of(*self.best))
 
     @property
@@ -111,7 +114,7 @@ class Part:
 
     def cover(self, deadline: Deadline) -> None:
         """A smallest set cover: the first bound, and a division with every cell painted whole."""
-        found = set_cover(self.instance, deadline=deadline)
+        found = set_cover(self.regions, deadline)
         self.cover_bound = max(self.bound, found.bound)
         self._planned = found.regions
         self._raise_to(found.bound, "cover", for_surface=True)
@@ -119,12 +122,13 @@ class Part:
 
     def solve_exactly(self, deadline: Deadline) -> None:
         """The minimum of a part whose shape allows a recursion (``exact_shapes``)."""
-        found = exact_minimum(self._part, deadline)
+        found = exact_minimum(self.instance, deadline)
         if found is None:
             return
-        self._keep(self._narrow, canonical(self._narrow, found.painting(self._narrow)))
+        segments, areas = found
+        self._keep(self._narrow, painting_of_areas(self._narrow, areas))
         if max(self._widest.values(), default=1) == 1:
-            self._raise_to(found.segments, "exact", for_surface=False)
+            self._raise_to(segments, "exact", for_surface=False)
 
     def improve(self, turn: int, deadline: Deadline) -> None:
         """Local search from cells painted whole, then from the best division.
@@ -184,9 +188,8 @@ class Part:
             self._minimize(self._widest, deadline)
 
     def _minimize(self, strands: dict[int, int], deadline: Deadline) -> None:
-        part = self._part
         try:
-            graph = complete_graph(self.instance, strands, part.loops, part.seams)
+            graph = complete_graph(self.instance, strands)
             built = SectorModel(graph, self.regions, MOST_LITERALS, deadline=deadline)
         except TooLarge as error:
             self.notes.append(str(error))
@@ -202,8 +205,7 @@ class Part:
             self.model_size = built.size
             self._proved(solver.best_objective_bound)
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            painting = canonical(graph, built.painting(solver))
-            self._keep(*seamed(self.instance, strands, graph, painting, part.loops, part.seams))
+            self._keep(graph, canonical(graph, built.painting(solver)))
 
     def _proved(self, bound: float) -> None:
         self._raise_to(ceil(bound - 1e-6), "model", for_surface=False)
@@ -217,17 +219,13 @@ class Part:
     @cached_property
     def _narrow(self) -> DartGraph:
         """The part's darts with one strand of each edge, and few of each seam."""
-        part = self._part
-        seams: tuple[Seam, ...] = widened(
-            self.instance, self._once, part.loops, part.seams, FEW_STRANDS
-        )
-        return dart_graph(self.instance, self._once, seams, part.loops)
+        seams = widened(self.instance, self._once, FEW_STRANDS)
+        return dart_graph(self.instance, self._once, seams)
 
     def _begin_with(self, plan: SegmentPlan, deadline: Deadline) -> None:
         """Local search from cells that are painted whole, as a plan has them."""
-        self._planned = [segment.region for segment in plan]
-        color_of = {cell: segment.region[0] for segment in plan for cell in segment.cells}
-        start = self._whole([color_of[cell.id] for cell in self.instance.cells])
+        self._planned = [region for region, _ in plan]
+        start = self._covered([(region[0], cells) for region, cells in plan])
         self._keep(*start)
         if not self.done:
             self._recolor(*start, Random(self._options.seed), deadline, FEW_MOVES)

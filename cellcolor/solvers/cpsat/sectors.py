@@ -8,7 +8,7 @@ this graph.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -40,21 +40,16 @@ class SectorGraph:
     """Sectors, and the links between them in their order around each sector.
 
     A cell with n darts on its cyclic list has rings of n sectors, one for each dart, and a center.
-    Without rings it is all center. A **lone dart** is the only live dart of a further loop of its
-    cell. It has a sector of its own, which may be attached to any one other sector of the cell,
-    since nothing keeps the loop from lying beside any sub-cell.
+    Without rings it is all center.
 
     Attributes:
-        graph: the dart graph. The first loop of a cell is the cyclic list, each other one has a
-            single dart, a lone dart.
-        nodes: the sectors of each cell: ring by ring from the border inwards, the center, and then
-            the sectors of lone darts.
+        graph: the dart graph, with one cyclic list for each cell.
+        nodes: the sectors of each cell: ring by ring from the border inwards, and the center.
         rings: how many rings each cell has.
         cell: the cell of each sector.
         at: the sector at each dart.
         links: the links that are drawn.
         around: for each sector its links counterclockwise, each with the side of it.
-        hosts: for each sector of a lone dart, those that it may be attached to.
     """
 
     graph: DartGraph
@@ -64,7 +59,6 @@ class SectorGraph:
     at: list[int] = field(default_factory=list)
     links: list[Link] = field(default_factory=list)
     around: list[list[tuple[int, int]]] = field(default_factory=list)
-    hosts: dict[int, list[int]] = field(default_factory=dict)
 
     @cached_property
     def beside(self) -> list[list[int]]:
@@ -83,12 +77,6 @@ class SectorGraph:
         for number, dart in enumerate(self.graph.darts):
             found[self.at[number]].append((self.at[dart.twin], dart.colors))
         return found
-
-    def center(self, cell: int) -> int:
-        """The center of a cell, or the first lone dart's sector if all of its darts are lone."""
-        own = self.nodes[cell]
-        count = len(self.graph.loops[cell][0]) if self.graph.loops[cell] else 0
-        return own[count * self.rings[cell]]
 
     @cached_property
     def faces(self) -> tuple[list[tuple[int, int]], int]:
@@ -126,7 +114,6 @@ def sector_graph(
     Then (m - 1) / 2 rings, rounded up, are enough (docs/formulation.md).
 
     Args:
-        graph: the first loop of each cell is a cyclic list, the others are lone darts.
         most_rings: no cell gets more rings; some schemes may then have no room.
         most_colors: of all sectors together, each in any color of its cell.
 
@@ -135,114 +122,78 @@ def sector_graph(
     """
     made = SectorGraph(graph)
     made.at.extend([0] * len(graph.darts))
-    left = most_colors
-    for cell, loops in enumerate(graph.loops):
+    colors = 0
+    for cell, darts in enumerate(graph.lists):
         deadline.check()
-        rings = _rings_of(graph, loops, most_rings)
-        if left is not None:
-            count = len(loops[0]) * rings + len(loops) if loops else 1
-            left -= count * len(graph.colors[cell])
-            if left < 0:
-                raise TooLarge(
-                    "The model was not built: "
-                    f"it would need more than {most_colors} literals for the colors of sectors."
-                )
-        _add_sectors(made, cell, loops, rings)
-    halves: list[list[tuple[int, int]]] = [[] for _ in made.cell]
+        first, count = len(made.cell), len(darts)
+        most = len(darts) if most_rings is None else most_rings
+        rings = _enough_rings([graph.darts[dart].colors for dart in darts], most)
+        colors += (count * rings + 1) * len(graph.colors[cell])
+        if most_colors is not None and colors > most_colors:
+            raise TooLarge(
+                "The model was not built: "
+                f"it would need more than {most_colors} literals for the colors of sectors."
+            )
+        made.nodes.append(range(first, first + count * rings + 1))
+        made.rings.append(rings)
+        made.cell.extend([cell] * len(made.nodes[-1]))
+        for place, number in enumerate(darts):
+            made.at[number] = first + place if rings else first
     number_of = {}
     for number, dart in enumerate(graph.darts):
         one, other = made.at[number], made.at[dart.twin]
         if number < dart.twin and one != other:
             number_of[number], number_of[dart.twin] = (len(made.links), 0), (len(made.links), 1)
             made.links.append(Link(one, other, number))
-    for cell, loops in enumerate(graph.loops):
-        for loop in loops[1:]:
-            halves[made.at[loop[0]]] = [number_of[d] for d in loop if d in number_of]
-        _add_rings(made, cell, loops[0] if loops else (), number_of, halves)
-    made.around.extend(halves)
+    for cell, darts in enumerate(graph.lists):
+        _add_rings(made, cell, [number_of.get(dart) for dart in darts])
     return made
 
 
-def _rings_of(graph: DartGraph, loops: Sequence[Sequence[int]], most_rings: int | None) -> int:
-    joinable = frozenset[int]().union(*(graph.darts[d].colors for loop in loops for d in loop))
-    if len(joinable) < 2:  # sub-cells that have darts in state 1 would be of one color
-        return 0
-    rings = _enough_rings([graph.darts[dart].colors for dart in loops[0]], len(loops) > 1)
-    return rings if most_rings is None else min(rings, most_rings)
+def _add_rings(made: SectorGraph, cell: int, outward: Sequence[tuple[int, int] | None]) -> None:
+    """Link the sectors of a cell, and put all links in order around them.
 
-
-def _add_sectors(made: SectorGraph, cell: int, loops: Sequence[Sequence[int]], rings: int) -> None:
-    darts = loops[0] if loops else ()
-    lone = [loop[0] for loop in loops[1:]]
-    first, count = len(made.cell), len(darts)
-    centers = 1 if darts or not lone else 0
-    end = first + count * rings + centers + len(lone)
-    made.nodes.append(range(first, end))
-    made.rings.append(rings)
-    made.cell.extend([cell] * (end - first))
-    ring = [first + place if rings else first for place in range(count)]
-    for dart, node in zip(darts, ring, strict=True):
-        made.at[dart] = node
-    hosts = sorted({*ring, *range(first, first + centers)}) if not rings else ring
-    for node, dart in enumerate(lone, start=end - len(lone)):
-        made.at[dart] = node
-        made.hosts[node] = [*hosts, *range(end - len(lone), node)]
-
-
-def _add_rings(
-    made: SectorGraph,
-    cell: int,
-    darts: Sequence[int],
-    number_of: dict[int, tuple[int, int]],
-    halves: list[list[tuple[int, int]]],
-) -> None:
-    """Link the sectors of a cell, and put all links in order around them."""
-    first, count, rings = made.nodes[cell][0], len(darts), made.rings[cell]
-    if not rings:
-        if darts:
-            halves[first] = [number_of[dart] for dart in darts if dart in number_of]
-        return
-    center = first + count * rings
+    Args:
+        outward: the link across each dart, with the side of it; None if there is none.
+    """
+    first, count, rings = made.nodes[cell][0], len(outward), made.rings[cell]
 
     def link(one: int, other: int) -> int:
         made.links.append(Link(one, other, -1))
         return len(made.links) - 1
 
-    outward = [number_of.get(dart) for dart in darts]
     for ring in range(rings):
         row = [first + ring * count + place for place in range(count)]
         along = [link(node, row[(place + 1) % count]) for place, node in enumerate(row)]
-        inward = [link(node, node + count if ring + 1 < rings else center) for node in row]
-        for place, node in enumerate(row):
-            out = outward[place]
-            halves[node] = [
-                *([] if out is None else [out]),
-                (along[place], 0),
-                (inward[place], 0),
-                (along[place - 1], 1),
-            ]
+        inward = [link(node, min(node + count, made.nodes[cell][-1])) for node in row]
+        for place, out in enumerate(outward):
+            made.around.append(
+                [
+                    *([] if out is None else [out]),
+                    (along[place], 0),
+                    (inward[place], 0),
+                    (along[place - 1], 1),
+                ]
+            )
         outward = [(number, 1) for number in inward]
-    halves[center] = [half for half in outward if half is not None]
+    made.around.append([half for half in outward if half is not None])
 
 
-def _enough_rings(colors: Sequence[frozenset[int]], lone: bool) -> int:
-    """How many rings every scheme can be drawn in.
+def _enough_rings(colors: Sequence[frozenset[int]], most: int) -> int:
+    """How many rings every scheme can be drawn in, or ``most`` if these are more.
 
     Args:
         colors: those joinable at each dart of a cyclic list.
-        lone: whether the cell has lone darts. With one of these, a single dart of the list is
-            enough for a sub-cell at either end of a chain.
     """
-    if len(colors) < 2:
-        return 0
-    longest = _longest_chain(colors)
-    if lone:
-        longest = min(longest + 2, len(colors) // 2 + 1)
-    return longest // 2
+    if len(colors) < 2 or len(frozenset[int]().union(*colors)) < 2:
+        return 0  # sub-cells that have darts in state 1 would be of one color
+    return min(most, _longest_chain(colors, 2 * most) // 2)
 
 
-def _longest_chain(colors: Sequence[frozenset[int]]) -> int:
+def _longest_chain(colors: Sequence[frozenset[int]], enough: int) -> int:
     """The most chords between darts of a common color of which each separates its neighbors.
+
+    The search ends where there are enough of them.
 
     Chords of a chain are nested in some stretch of the cyclic list. So ``most[first]`` is the
     length of the longest chain of nested chords in the stretch of ``size`` darts from the first.
@@ -255,22 +206,14 @@ def _longest_chain(colors: Sequence[frozenset[int]]) -> int:
         chord = share[first, (first + size - 1) % count]
         within = np.where(chord, 1 + np.roll(shorter, -1), 0)
         shorter, most = most, np.maximum.reduce([most, np.roll(most, -1), within])
+        if most.max() >= enough:
+            break
     return int(most.max())
 
 
-def painting_of_sectors(
-    sectors: SectorGraph, colors: Sequence[int], attached: Mapping[int, int] | None = None
-) -> Painting:
-    """The division in which each sector has the given color.
-
-    Args:
-        attached: the sector that each lone dart's sector is attached to, if any.
-    """
+def painting_of_sectors(sectors: SectorGraph, colors: Sequence[int]) -> Painting:
+    """The division in which each sector has the given color."""
     graph, beside = sectors.graph, sectors.beside
-    held: dict[int, list[int]] = {}
-    for lone, host in (attached or {}).items():
-        held.setdefault(host, []).append(lone)
-        held.setdefault(lone, []).append(host)
     block_of: dict[int, Block] = {}
     painting: Painting = []
     for nodes in sectors.nodes:
@@ -282,7 +225,7 @@ def painting_of_sectors(
             blocks.append(block_of[node])
             reached = [node]
             for place in reached:
-                for other in (*beside[place], *held.get(place, ())):
+                for other in beside[place]:
                     if other not in block_of and colors[other] == colors[node]:
                         block_of[other] = block_of[node]
                         reached.append(other)

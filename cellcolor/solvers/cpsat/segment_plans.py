@@ -3,14 +3,23 @@
 A plan is a relaxation of a division. It does not say how segments run; it only respects the pairs
 of segments that are known to be unable to pass each other (``conflicts``). So if there is no plan
 with n segments, no division of the surface has n segments (docs/bounds.md, "Segment
-plans"). A plan takes milliseconds where the model takes seconds.
+plans"). A plan takes milliseconds where the model takes seconds. Terms:
+
+- A **merged cell** consists of cells that nothing separates in any color (``merged_surface``).
+- A **separation** of two color regions: if a segment of the one region touches both ``ends``, no
+  segment of the other region touches merged cells of two of the ``groups``.
+- Merged cells of a region are of one **kind** if the same separations name them in the same places.
+  A segment that touches one of a kind may then touch all of them, so the model has one literal for
+  each kind, not for each merged cell. What no separation names any segment of the region may touch.
+- A region gets several **copies**, of which the plan uses as many as it has segments there. If it
+  may have more segments than copies, nothing is asked of a plan that has: such a region touches all
+  its merged cells, and no separation counts there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import combinations
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import combinations, product
 
 from ortools.sat.python import cp_model
 
@@ -19,27 +28,10 @@ from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.conflicts import RegionPair, Separation, Side
 from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.bounds.merged_surface import merge_cells
-from cellcolor.solvers.cpsat.plan_model import (
-    PlanCells,
-    PlanModel,
-    SegmentName,
-    SeparatedCells,
-)
 from cellcolor.solvers.cpsat.runner import Solve
 
-
-@dataclass(frozen=True, slots=True)
-class PlannedSegment:
-    """A segment of a plan: its color region, and the cells that it is to touch.
-
-    Each cell is given to one segment.
-    """
-
-    region: Region
-    cells: frozenset[int]
-
-
-SegmentPlan = tuple[PlannedSegment, ...]
+SegmentPlan = tuple[tuple[Region, frozenset[int]], ...]
+"""Each segment's color region, and the cells that it is to touch; each cell is given to one."""
 
 MOST_LITERALS = 100_000
 """The most literals of a model, one for each copy and kind; beyond that the planner gives up."""
@@ -56,6 +48,12 @@ MOST_STARTS = 5
 """Curves are drawn from one merged cell of a segment to its others. If they show no crossing, they
 are drawn from this many of its merged cells."""
 
+_Named = tuple[int, frozenset[int]]
+"""The number of a color region, and some of its merged cells."""
+
+_Copy = tuple[int, int]
+"""The number of a color region, and that of one of its copies."""
+
 
 class Undecided(Exception):
     """Within its limits the planner neither found a plan nor proved that there is none."""
@@ -68,9 +66,6 @@ class Planner:
         regions: its color regions.
         fewest: the size of a smallest cover: as few regions can touch every cell, not fewer.
         cover: color regions that touch every cell, a hint for the first plan.
-
-    Attributes:
-        instance: the instance.
     """
 
     def __init__(
@@ -80,9 +75,7 @@ class Planner:
         fewest: int,
         cover: Sequence[Region] = (),
     ) -> None:
-        self.instance = instance
-        self._regions = regions
-        self._fewest = fewest
+        self._instance, self._regions, self._fewest = instance, regions, fewest
         # How many segments of each region are told apart; more only where a plan has more.
         self._copies = [1] * len(regions)
         self._number = {region: number for number, region in enumerate(regions)}
@@ -90,16 +83,14 @@ class Planner:
         # grown over all. So a plan need not tell them apart.
         own = {cell.id: frozenset(cell.colors) for cell in instance.cells}
         self._merged = merge_cells(instance, own)
-        self._merged_cells = self._merged.cells()
-        self._merged_cells_of = [
-            frozenset(self._merged.merged_cell_of[cell] for cell in cells) for _, cells in regions
-        ]
+        self._regions_of: dict[int, list[int]] = {}
+        for number, (_, cells) in enumerate(regions):
+            for merged_cell in sorted(self._held(cells)):
+                self._regions_of.setdefault(merged_cell, []).append(number)
         self._pairs: dict[tuple[int, int], RegionPair] = {}
         self._separations: dict[tuple[int, int], list[Separation]] = {}
-        self._looked_at: set[tuple[tuple[int, int], int, int]] = set()
-        self._last: dict[SegmentName, set[int]] = {
-            (self._number[region], 0): set() for region in cover
-        }
+        # The segments of the last plan, with the kinds that they touch.
+        self._last: dict[_Copy, set[int]] = {(self._number[region], 0): set() for region in cover}
 
     def plan(self, segments: int, solve: Solve) -> SegmentPlan | None:
         """A plan with an exact number of segments that respects all separations so far.
@@ -115,12 +106,25 @@ class Planner:
             Undecided: the model would be too large, or the limits came first.
         """
         # Without the segments of a region but one, the segments are still a cover.
-        most = [segments - self._fewest + 1] * len(self._regions)
-        cells = PlanCells(self._merged_cells_of, self._separated_cells())
+        most = segments - self._fewest + 1
+        separated = list(self._separated())
+        kinds = self._kinds(separated)
         while True:
-            copies = list(map(min, self._copies, most))
-            self._refuse_large(cells, copies)
-            built = PlanModel(cells, segments, copies, most, self._last)
+            copies = [min(own, most) for own in self._copies]
+            if (
+                sum(n * len({*own.values()}) for n, own in zip(copies, kinds, strict=True))
+                > MOST_LITERALS
+                or sum(
+                    copies[ends[0][0]] * copies[groups[0][0]] * (2 + len(groups))
+                    for ends, groups in separated
+                )
+                > MOST_SEPARATED
+            ):
+                raise Undecided
+            built = _PlanModel(segments, copies, most, kinds, self._last)
+            built.add_cover(self._demands(kinds))
+            for ends, groups in separated:
+                built.add_separation(ends, groups)
             solver, status = solve(built.model)
             if status == cp_model.INFEASIBLE:
                 return None
@@ -138,21 +142,7 @@ class Planner:
             for segment, literal in built.in_use.items()
             if solver.boolean_value(literal)
         }
-        return self._read(cells.kinds)
-
-    def _refuse_large(self, cells: PlanCells, copies: Sequence[int]) -> None:
-        """Refuse what would take too long.
-
-        Raises:
-            Undecided: the model would be too large.
-        """
-        kinds = (copies[region] * len({*own.values()}) for region, own in enumerate(cells.kinds))
-        separated = (
-            copies[one] * copies[other] * sum(2 + len(own.groups) for own in separations)
-            for (one, other), separations in self._separations.items()
-        )
-        if sum(kinds) > MOST_LITERALS or sum(separated) > MOST_SEPARATED:
-            raise Undecided
+        return self._read(kinds)
 
     @property
     def separations(self) -> Iterator[tuple[Region, Region, Separation]]:
@@ -163,87 +153,205 @@ class Planner:
 
     def find_separations(self, plan: SegmentPlan, deadline: Deadline) -> bool:
         """Look for two segments of a plan that would cross; returns whether there are any."""
-        return any(self._find(plan, every, deadline) for every in (False, True))
+        return any(self._find(plan, starts, deadline) for starts in (1, MOST_STARTS))
 
-    def _find(self, plan: SegmentPlan, every: bool, deadline: Deadline) -> bool:
-        """Look at curves from one merged cell of each segment or, with ``every``, from a few."""
+    def _find(self, plan: SegmentPlan, starts: int, deadline: Deadline) -> bool:
+        """Look at curves from so many merged cells of each segment."""
         found = 0
         for one, other in combinations(plan, 2):
-            first, second = sorted((one, other), key=lambda s: self._number[s.region])
-            numbers = self._number[first.region], self._number[second.region]
-            if first.region[0] == second.region[0] or first.region[1].isdisjoint(second.region[1]):
+            first, second = sorted((one, other), key=lambda segment: self._number[segment[0]])
+            numbers = self._number[first[0]], self._number[second[0]]
+            if first[0][0] == second[0][0] or first[0][1].isdisjoint(second[0][1]):
                 continue
             if numbers not in self._pairs:
                 deadline.check()
-                self._pairs[numbers] = RegionPair(self.instance, first.region, second.region)
+                self._pairs[numbers] = RegionPair(self._instance, first[0], second[0])
             pair = self._pairs[numbers]
             for key, side, own, separated in (
-                (numbers, pair.first, first, second),
-                (numbers[::-1], pair.second, second, first),
+                (numbers, pair.first, first[1], second[1]),
+                (numbers[::-1], pair.second, second[1], first[1]),
             ):
-                held = {pair.merged_cell_of(cell) for cell in own.cells}
+                held = {pair.merged_cell_of.get(cell) for cell in own}
                 ends = [merged_cell for merged_cell in side.merged_cells if merged_cell in held]
-                for new in self._violated(key, side, ends, separated.cells, every, deadline):
+                for new in _violated(side, ends, separated, starts, deadline):
                     self._separations.setdefault(key, []).append(new)
                     found += 1
                     if found == MOST_SEPARATIONS:
                         return True
         return found > 0
 
-    def _violated(
-        self,
-        key: tuple[int, int],
-        side: Side,
-        ends: Sequence[int],
-        cells: frozenset[int],
-        every: bool,
-        deadline: Deadline,
-    ) -> Iterator[Separation]:
-        """New separations by a segment that touches ``ends``, of the cells of another segment."""
-        starts = range(min(MOST_STARTS, len(ends))) if every else range(1)
-        for near, far in ((ends[n], merged_cell) for n in starts for merged_cell in ends[n + 1 :]):
-            if (key, near, far) in self._looked_at:
-                continue
-            deadline.check()
-            for separation in side.separations(near, far):
-                touched = (
-                    any(not merged_cell.isdisjoint(cells) for merged_cell in group)
-                    for group in separation.groups
+    def _separated(self) -> Iterator[tuple[list[_Named], list[_Named]]]:
+        """The separations so far: two ends in the one region, and groups in the other."""
+        for (one, other), separations in self._separations.items():
+            for separation in separations:
+                groups = [frozenset[int]().union(*group) for group in separation.groups]
+                yield (
+                    [(one, self._held(end)) for end in separation.ends],
+                    [(other, self._held(group)) for group in groups],
                 )
-                if sum(touched) > 1:
-                    self._looked_at.add((key, near, far))
-                    yield separation
 
-    def _separated_cells(self) -> SeparatedCells:
-        """The separations found so far, in merged cells of the whole instance."""
-        return {
-            pair: [
-                (
-                    [self._held(end) for end in separation.ends],
-                    [self._held(frozenset[int]().union(*group)) for group in separation.groups],
-                )
-                for separation in separations
-            ]
-            for pair, separations in self._separations.items()
-        }
-
-    def _held(self, cells: frozenset[int]) -> frozenset[int]:
+    def _held(self, cells: Iterable[int]) -> frozenset[int]:
         """The merged cells that contain some cells."""
         return frozenset(self._merged.merged_cell_of[cell] for cell in cells)
 
+    def _kinds(
+        self, separated: Iterable[tuple[list[_Named], list[_Named]]]
+    ) -> list[dict[int, int]]:
+        """For each region its merged cells that separations name, with the first of their kind."""
+        places: list[dict[int, list[int]]] = [{} for _ in self._regions]
+        named = (own for ends, groups in separated for own in (*ends, *groups))
+        for number, (region, merged_cells) in enumerate(named):
+            for merged_cell in merged_cells:
+                places[region].setdefault(merged_cell, []).append(number)
+        kinds: list[dict[int, int]] = []
+        for own in places:
+            first: dict[tuple[int, ...], int] = {}
+            kinds.append({m: first.setdefault(tuple(own[m]), m) for m in sorted(own)})
+        return kinds
+
+    def _demands(self, kinds: Sequence[Mapping[int, int]]) -> Iterable[dict[int, int | None]]:
+        """The regions of the merged cells that have to be touched, with the kinds there.
+
+        Merged cells of the same regions and kinds are touched together. One needs no constraint if
+        another one implies it: if it lies in all regions of the other one, and in each of them has
+        the kind of the other one or no kind.
+        """
+        different = dict.fromkeys(
+            tuple((region, kinds[region].get(merged_cell)) for region in regions)
+            for merged_cell, regions in self._regions_of.items()
+        )
+        demands = [dict(key) for key in different]
+        lying_in: dict[int, set[int]] = {}
+        for number, own in enumerate(demands):
+            for region in own:
+                lying_in.setdefault(region, set()).add(number)
+        implied: set[int] = set()
+        for number, own in enumerate(demands):
+            for other in set.intersection(*(lying_in[region] for region in own)) - {number}:
+                if all(demands[other][region] in (None, kind) for region, kind in own.items()):
+                    implied.add(other)
+        return [own for number, own in enumerate(demands) if number not in implied]
+
     def _read(self, kinds: Sequence[Mapping[int, int]]) -> SegmentPlan:
         """The last plan, with each merged cell given to the first segment that touches it."""
-        cells: dict[SegmentName, set[int]] = {segment: set() for segment in self._last}
-        for merged_cell, own in self._merged_cells.items():
+        cells: dict[_Copy, set[int]] = {segment: set() for segment in self._last}
+        for merged_cell, own in self._merged.cells().items():
             touching = (
                 (number, copy)
                 for (number, copy), touched in self._last.items()
-                if merged_cell in self._merged_cells_of[number]
+                if number in self._regions_of[merged_cell]
                 and (merged_cell not in kinds[number] or kinds[number][merged_cell] in touched)
             )
             cells[next(touching)] |= own
         return tuple(
-            PlannedSegment(self._regions[number], frozenset(own))
-            for (number, _), own in cells.items()
-            if own
+            (self._regions[number], frozenset(own)) for (number, _), own in cells.items() if own
         )
+
+
+def _violated(
+    side: Side, ends: Sequence[int], cells: frozenset[int], starts: int, deadline: Deadline
+) -> Iterator[Separation]:
+    """Separations by a segment that touches ``ends`` of the cells of another segment."""
+    for near, far in combinations(ends, 2):
+        if near not in ends[:starts]:
+            return
+        deadline.check()
+        for separation in side.separations(near, far):
+            touched = (
+                any(not merged_cell.isdisjoint(cells) for merged_cell in group)
+                for group in separation.groups
+            )
+            if sum(touched) > 1:
+                yield separation
+
+
+class _PlanModel:
+    """The CP-SAT model of plans with an exact number of segments.
+
+    Args:
+        segments: how many segments a plan has.
+        copies: how many segments of each region the plan tells apart.
+        most: how many segments a region may have at most, as many as its copies or more.
+        kinds: of each region.
+        last: the segments of the last plan with the kinds that they touch, as a hint.
+
+    Attributes:
+        model: the model.
+        in_use: for every copy: it is a segment of the plan.
+        beyond: for every region that may have more segments than copies: it has.
+        touched: for every copy and kind: the segment touches that kind.
+    """
+
+    def __init__(
+        self,
+        segments: int,
+        copies: Sequence[int],
+        most: int,
+        kinds: Sequence[Mapping[int, int]],
+        last: Mapping[_Copy, set[int]],
+    ) -> None:
+        self.model = model = cp_model.CpModel()
+        self.in_use: dict[_Copy, cp_model.IntVar] = {}
+        self.beyond: dict[int, cp_model.IntVar] = {}
+        self.touched: dict[_Copy, dict[int, cp_model.IntVar]] = {}
+        self._copies, self._kinds = copies, kinds
+        self._touching: dict[tuple[_Copy, frozenset[int]], cp_model.IntVar] = {}
+        further = []
+        for region, count in enumerate(copies):
+            for copy in range(count):
+                segment = region, copy
+                self.in_use[segment] = own = model.new_bool_var("")
+                model.add_hint(own, segment in last)
+                if copy:
+                    model.add_implication(own, self.in_use[region, copy - 1])
+                self.touched[segment] = {}
+                for kind in sorted(set(kinds[region].values())):
+                    self.touched[segment][kind] = literal = model.new_bool_var("")
+                    model.add_implication(literal, own)
+                    model.add_hint(literal, kind in last.get(segment, ()))
+            if count < most:  # segments besides the copies, which then are all in use
+                further.append(model.new_int_var(0, most - count, ""))
+                self.beyond[region] = literal = model.new_bool_var("")
+                model.add_implication(literal, self.in_use[region, count - 1])
+                model.add(further[-1] == 0).only_enforce_if(~literal)
+                model.add(further[-1] >= 1).only_enforce_if(literal)
+                model.add_hint(literal, False)
+                model.add_hint(further[-1], 0)
+        model.add(sum([*self.in_use.values(), *further]) == segments)
+
+    def add_cover(self, demands: Iterable[Mapping[int, int | None]]) -> None:
+        """Some segment touches each merged cell, given by its regions and its kinds there."""
+        for demand in demands:
+            literals = []
+            for region, kind in demand.items():
+                if kind is None:
+                    literals.append(self.in_use[region, 0])
+                else:
+                    literals += [self.touched[own][kind] for own in self._segments_in(region)]
+                    literals += self._beyond(region)
+            self.model.add_bool_or(literals)
+
+    def add_separation(self, ends: Sequence[_Named], groups: Sequence[_Named]) -> None:
+        """No segment touches two groups if one of the other region touches both ends."""
+        one, other = ends[0][0], groups[0][0]
+        told_apart = [~literal for literal in self._beyond(one, other)]
+        for near, far in product(self._segments_in(one), self._segments_in(other)):
+            both = [self._touches(near, merged_cells) for _, merged_cells in ends]
+            touched = [self._touches(far, merged_cells) for _, merged_cells in groups]
+            self.model.add(sum(touched) <= 1).only_enforce_if(both + told_apart)
+
+    def _segments_in(self, region: int) -> list[_Copy]:
+        return [(region, copy) for copy in range(self._copies[region])]
+
+    def _beyond(self, *regions: int) -> list[cp_model.IntVar]:
+        """Literals of which one is true if one of the regions has more segments than copies."""
+        return [self.beyond[region] for region in sorted({*regions}) if region in self.beyond]
+
+    def _touches(self, segment: _Copy, merged_cells: Iterable[int]) -> cp_model.IntVar:
+        """A literal that is true if a segment touches one of some merged cells."""
+        key = segment, frozenset(self._kinds[segment[0]][m] for m in merged_cells)
+        if key not in self._touching:
+            self._touching[key] = self.model.new_bool_var("")
+            for kind in sorted(key[1]):
+                self.model.add_implication(self.touched[segment][kind], self._touching[key])
+        return self._touching[key]

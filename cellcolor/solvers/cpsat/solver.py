@@ -1,6 +1,6 @@
 """The CP-SAT solver: a cover, local search, separating pairs, and the model.
 
-Segments never reach from one part of the instance into another (``parts``), so minima and bounds
+Segments never reach from one part of the instance into another (``split``), so minima and bounds
 of parts add up. Each step is done for every part that is not proved before the next step begins.
 """
 
@@ -20,9 +20,15 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import ModelSize, Seam, count_segments
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import InputError
-from cellcolor.solvers.bounds.cover import greedy_independent_set
+from cellcolor.solvers.bounds.cover import color_regions, greedy_independent_set
 from cellcolor.solvers.cpsat.certificates import conflict_certificate
-from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph
+from cellcolor.solvers.cpsat.dart_graph import (
+    DartGraph,
+    dart_graph,
+    seam_places,
+    split,
+    with_strands,
+)
 from cellcolor.solvers.cpsat.optimal_schemes import OptimalSchemes
 from cellcolor.solvers.cpsat.painting import (
     Block,
@@ -32,7 +38,6 @@ from cellcolor.solvers.cpsat.painting import (
     painting_of,
 )
 from cellcolor.solvers.cpsat.part import Part
-from cellcolor.solvers.cpsat.parts import loops_of, seam_places, split
 from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
 
@@ -89,8 +94,7 @@ class _Search:
 
     def __init__(self, instance: Instance, options: Options, progress: OnProgress | None) -> None:
         self._instance, self._options, self._progress = instance, options, progress
-        self._loops = loops_of(instance)
-        self._places = seam_places(instance, self._loops)
+        self._places = seam_places(instance)
         self._own = tuple(frozenset(cell.colors) for cell in instance.cells)
         self._start: tuple[DartGraph, Painting] | None = None
         self._parts: list[Part] = []
@@ -116,7 +120,7 @@ class _Search:
         self._deadline.check()
         options = replace(self._options, deadline=self._deadline)
         for part in self._deadline.watch(split(self._instance)):
-            self._parts.append(Part(part, options, self._runner, self._report))
+            self._parts.append(Part(*part, options, self._runner, self._report))
         self._report()
         self._each(Part.cover, 1.0)
         self._each(Part.solve_exactly, SHARES["exact"])
@@ -174,14 +178,21 @@ class _Search:
         if not self._parts and self._whole is not None:
             return self._whole
         found: dict[int, list[tuple[int, list[Strand]]]] = {}
-        widths: dict[int, int] = {}
+        widths = {seam.id: 0 for seam in self._places}
+        seams_of: dict[int, list[int]] = {}
+        for seam in self._places:
+            seams_of.setdefault(seam.cell, []).append(seam.id)
         for part in self._parts:
             graph, painting = part.best
-            widths |= {seam.id: seam.strands for seam in graph.seams}
+            # Seams have other ids in the part.
+            ids = [seam for cell in part.cells for seam in seams_of.get(cell, ())]
+            widths |= {seam: own.strands for seam, own in zip(ids, graph.seams, strict=True)}
+            whole = {own.id: seam for seam, own in zip(ids, graph.seams, strict=True)}
+            whole |= {-own: -seam for own, seam in whole.items()}
+            names = [(whole.get(dart, dart), strand) for (dart, strand), *_ in graph.darts]
             for cell, blocks in zip(part.cells, painting, strict=True):
-                found[cell] = [(b.color, [graph.darts[d].name for d in b.darts]) for b in blocks]
-        seams = [replace(seam, strands=widths.get(seam.id, 0)) for seam in self._places]
-        graph = self._whole_graph(seams)
+                found[cell] = [(b.color, [names[dart] for dart in b.darts]) for b in blocks]
+        graph = self._whole_graph(with_strands(self._places, widths.values()))
         painting = [
             [
                 Block(color, {graph.number_of[name] for name in names})
@@ -193,7 +204,7 @@ class _Search:
 
     def _whole_graph(self, seams: Sequence[Seam]) -> DartGraph:
         strands = dict.fromkeys(self._instance.live_edges, self._options.strands)
-        return dart_graph(self._instance, strands, seams, self._loops)
+        return dart_graph(self._instance, strands, seams)
 
     def _bounds(self) -> tuple[Bound, ...]:
         """The proved bounds of the number of segments; those of parts add up.
@@ -201,7 +212,13 @@ class _Search:
         A kind is named only where it raised the bound of some part.
         """
         if not self._parts:
-            return (Bound("strangers", len(greedy_independent_set(self._instance)), "surface"),)
+            return (
+                Bound(
+                    "strangers",
+                    len(greedy_independent_set(color_regions(self._instance))),
+                    "surface",
+                ),
+            )
         certificate = conflict_certificate(self._parts)
         by = {part.by for part in self._parts}
         bounds = [

@@ -2,13 +2,11 @@
 
 - ``graph``: section III-C, cells as cyclic lists of topological edges
 - ``cell_schemes``: section IV, the codes of 0, 1, × and brackets of one cell
-- ``zeros``: section IV-C, zeros are moved outside the brackets
-- ``search``: section V, the graph solved cell by cell, with the cost of section V-A
-- ``literal_cost``: section V-A, the cost rule at its word, for study
+- ``search``: section V, the graph solved cell by cell, with the cost of section V-A; and of section
+  IV-C, zeros are moved outside the brackets
 - ``cover``: not in the paper, a lower bound from a set cover (solver ``dfs-cover``)
 """
 
-from cellcolor.solvers.dfs.literal_cost import literal_cost
 from cellcolor.solvers.dfs.solver import CoverReferenceSolver, ReferenceSolver
 
-__all__ = ["CoverReferenceSolver", "ReferenceSolver", "literal_cost"]
+__all__ = ["CoverReferenceSolver", "ReferenceSolver"]

@@ -2,7 +2,7 @@
 
 A cell is the cyclic list of its live darts. Beyond the paper, an edge may have several parallel
 strands, and seams make one list of the loops of a cell with holes (docs/semantics.md, sections 4
-and 5). The CP-SAT solver (``cpsat/model/dart_graph.py``) and the checker (``dart_lists.py``) have
+and 5). The CP-SAT solver (``cpsat/dart_graph.py``) and the checker (``dart_lists.py``) have
 their own code for both, on purpose: a mistake in one of the three is found by comparing.
 """
 

@@ -201,7 +201,8 @@ def test_only_turning_joints_are_modulo_full_circles() -> None:
 
 def test_a_slide_as_far_as_the_reach_counts_as_a_radian() -> None:
     policy = Setup.read(ROBOTS / "cobra600_dispensing.toml").continuity
-    measure = Measure(policy, 0.1, 0.0, np.array([False, True]), reach=0.5)
+    periods, units = np.array([2 * np.pi, np.inf]), np.array([1.0, 0.5])
+    measure = Measure(policy, 0.1, 0.0, periods, units)
     first, second = np.array([[0.1, 7.0]]), np.array([[0.1 + 2 * np.pi, 0.0]])
     assert measure.step(first, second) == pytest.approx([7.0 / 0.5])
 

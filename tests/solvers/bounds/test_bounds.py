@@ -31,7 +31,7 @@ SEEDS = st.integers(0, 10**6)
 @given(seed=SEEDS, cells=st.integers(1, 7), colors=st.integers(1, 4))
 def test_set_cover_is_a_lower_bound(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 3, colors)
-    cover = set_cover(instance).regions
+    cover = set_cover(color_regions(instance)).regions
     assert set().union(*(touched for _, touched in cover)) == set(range(len(instance.cells)))
     assert len(cover) <= minimum(instance)
 
@@ -39,7 +39,7 @@ def test_set_cover_is_a_lower_bound(seed: int, cells: int, colors: int) -> None:
 def test_set_cover_splits_colors_into_regions() -> None:
     # Two red cells that do not touch need a segment each.
     apart = Instance("apart", ("red",), (Cell(0, (RED,), ()), Cell(1, (RED,), ())), ())
-    assert set_cover(apart).bound == 2
+    assert set_cover(color_regions(apart)).bound == 2
 
 
 @examples(20)
@@ -48,7 +48,7 @@ def test_hard_cells_need_as_many_regions_as_all(seed: int, cells: int, colors: i
     """Against trying all sets of regions; strangers wherever there are as many of them."""
     instance = planar_graph(seed, cells, cells + 3, colors)
     regions = [touched for _, touched in color_regions(instance)]
-    value = set_cover(instance).bound
+    value = set_cover(color_regions(instance)).bound
     found = hard_cells(instance, value)
     assert found is not None
     for chosen in itertools.combinations(regions, min(value - 1, len(regions))):

@@ -85,7 +85,7 @@ def test_a_conflict_is_proved_for_any_division() -> None:
         ((BLUE,), (-5,)),
         ((BLUE,), (-7,)),
     )
-    assert set_cover(instance).bound == 2
+    assert set_cover(color_regions(instance)).bound == 2
     found = solve(instance, Options())
     assert (found.segments, found.surface_lower_bound) == (3, 3)
     assert found.proved_for_surface

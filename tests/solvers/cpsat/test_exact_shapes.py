@@ -18,9 +18,9 @@ from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.lab.families import hub_grid
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import exact_shapes, hub_ways
-from cellcolor.solvers.cpsat.exact_shapes import exact_minimum
-from cellcolor.solvers.cpsat.painting import canonical, division_of
-from cellcolor.solvers.cpsat.parts import split
+from cellcolor.solvers.cpsat.dart_graph import split
+from cellcolor.solvers.cpsat.exact_shapes import exact_minimum, painting_of_areas
+from cellcolor.solvers.cpsat.painting import division_of
 from cellcolor.solvers.interface import Options
 from examples import examples
 
@@ -83,18 +83,19 @@ def some_hubs(seed: int, hubs: int, petals: int, edges: int) -> Instance:
 def exact(instance: Instance, *, certain: bool = True) -> int | None:
     """The sum of the parts' minima; each part's division is legal and has as many segments."""
     total: int | None = 0
-    for part in split(instance):
+    for part, _ in split(instance):
         found = exact_minimum(part, NEVER)
         assert found is not None or not certain
         if found is None:
             total = None
             continue
-        graph = graph_of(part.instance)
-        painting = canonical(graph, found.painting(graph))
-        report = check_division(part.instance, division_of(graph, painting), seams=())
+        segments, areas = found
+        graph = graph_of(part)
+        painting = painting_of_areas(graph, areas)
+        report = check_division(part, division_of(graph, painting), seams=())
         assert report.valid, report.problems
-        assert report.segments == found.segments
-        total = None if total is None else total + found.segments
+        assert report.segments == segments
+        total = None if total is None else total + segments
     return total
 
 
@@ -145,7 +146,7 @@ def test_limits_leave_hubs_to_others(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_no_time() -> None:
-    (part,) = split(a_tree(0, 5, 1))
+    ((part, _),) = split(a_tree(0, 5, 1))
     with pytest.raises(OutOfTime):
         exact_minimum(part, Deadline.after(-1))
 

@@ -20,7 +20,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import planar_graph, voronoi
-from cellcolor.solvers.cpsat.dart_graph import dart_graph, seams_of
+from cellcolor.solvers.cpsat.dart_graph import dart_graph, widened
 from cellcolor.solvers.cpsat.drawing import sector_colors
 from cellcolor.solvers.cpsat.local_search import Recoloring, recolor
 from cellcolor.solvers.cpsat.painting import (
@@ -81,7 +81,7 @@ def test_segments_are_counted_right(seed: int, cells: int, colors: int, rings: i
     instance = planar_graph(seed, cells, 2 * cells, colors)
     graph = graph_of(instance)
     sectors = sector_graph(graph, rings)
-    search = Recoloring(sectors, sector_colors(sectors, whole(instance))[0], Random(seed))
+    search = Recoloring(sectors, sector_colors(sectors, whole(instance)), Random(seed))
     for _ in range(60):
         search.move()
         assert all(
@@ -123,7 +123,7 @@ def test_a_surface_with_holes_and_cracks() -> None:
 def test_a_seed_says_what_is_found() -> None:
     instance = planar_graph(3, 25, 50, 5)
     sectors = sector_graph(graph_of(instance), 1)
-    start = sector_colors(sectors, whole(instance))[0]
+    start = sector_colors(sectors, whole(instance))
     one, other, third = (Recoloring(sectors, start, Random(seed)) for seed in (1, 1, 2))
     for _ in range(200):
         one.move()
@@ -150,7 +150,7 @@ def test_a_part_of_340_cells() -> None:
     instance = cellcolor.read(INSTANCES / "hard" / "large_part_1.json")
     assert isinstance(instance, Instance)
     once = {edge.id: 1 for edge in instance.edges}
-    graph = dart_graph(instance, once, seams_of(instance, once, 2))
+    graph = dart_graph(instance, once, widened(instance, once, 2))
     sectors = sector_graph(graph, 1)
     painted = [min(graph.colors[cell]) for cell in sectors.cell]
     search = Recoloring(sectors, painted, Random(0))

@@ -17,10 +17,8 @@ from cellcolor.checker.division import check_division, check_scheme
 from cellcolor.data.instance import Instance
 from cellcolor.lab.families import planar_graph
 from cellcolor.solvers.cpsat import painting as paintings
-from cellcolor.solvers.cpsat.dart_graph import DartGraph, complete_graph, dart_graph
-from cellcolor.solvers.cpsat.drawing import seamed
+from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph
 from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, division_of, segments_of
-from cellcolor.solvers.cpsat.parts import loops_of, seam_places
 from cellcolor.solvers.cpsat.sectors import painting_of_sectors, sector_graph
 from examples import examples
 
@@ -30,7 +28,7 @@ SEEDS = st.integers(0, 10**6)
 
 
 def at_random(graph: DartGraph, seed: int) -> Painting:
-    """Every sector in any color of its cell, and lone darts attached to any sectors of their color.
+    """Every sector in any color of its cell.
 
     A few colors are preferred, so that sub-cells have some darts.
     """
@@ -41,11 +39,7 @@ def at_random(graph: DartGraph, seed: int) -> Painting:
         rng.choices(own := sorted(graph.colors[cell]), [preferred[c] for c in own])[0]
         for cell in sectors.cell
     ]
-    attached = {}
-    for lone, hosts in sectors.hosts.items():
-        if own := [host for host in hosts if colors[host] == colors[lone]]:
-            attached[lone] = rng.choice(own)
-    return painting_of_sectors(sectors, colors, attached)
+    return painting_of_sectors(sectors, colors)
 
 
 @examples(40)
@@ -60,22 +54,6 @@ def test_any_painting_has_a_scheme(seed: int, cells: int, colors: int) -> None:
     report = check_division(instance, division_of(graph, found))
     assert report.is_scheme, (report.problems, report.not_canonical)
     assert report.segments is not None and report.segments <= segments
-
-
-@examples(40)
-@given(seed=SEEDS, darts=st.integers(4, 9), loops=st.integers(2, 4), colors=st.integers(2, 4))
-def test_leaf_darts_are_drawn_with_seams(seed: int, darts: int, loops: int, colors: int) -> None:
-    """The checker, which knows seams only, sees a legal division with as many segments."""
-    instance = holes.holed(seed, darts, loops, colors)
-    every, once = loops_of(instance), dict.fromkeys(instance.live_edges, 1)
-    places = seam_places(instance, every)
-    graph = complete_graph(instance, once, every, places)
-    painting = canonical(graph, at_random(graph, seed))
-    made, found = seamed(instance, once, graph, painting, every, places)
-    report = check_division(instance, division_of(made, found), made.seams)
-    assert report.valid, report.problems
-    assert report.segments is not None
-    assert report.segments <= len(segments_of(graph, painting))
 
 
 def test_a_canonical_painting_has_no_idle_cuts_and_no_single_darts() -> None:

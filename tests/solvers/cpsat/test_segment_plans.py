@@ -25,7 +25,7 @@ SEEDS = st.integers(0, 10**6)
 
 
 def planner_of(instance: Instance) -> Planner:
-    return Planner(instance, color_regions(instance), set_cover(instance).bound)
+    return Planner(instance, color_regions(instance), set_cover(color_regions(instance)).bound)
 
 
 def one_worker(model: cp_model.CpModel) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
@@ -37,7 +37,7 @@ def one_worker(model: cp_model.CpModel) -> tuple[cp_model.CpSolver, cp_model.CpS
 def fewest_planned(instance: Instance) -> tuple[int, SegmentPlan]:
     """The fewest segments for which there is a plan in which none are known to cross."""
     planner = planner_of(instance)
-    segments = set_cover(instance).bound
+    segments = set_cover(color_regions(instance)).bound
     while True:
         plan = planner.plan(segments, one_worker)
         if plan is None:
@@ -60,7 +60,7 @@ def fewest_planned(instance: Instance) -> tuple[int, SegmentPlan]:
 def test_plans_respect_separations(petals: tuple[int, ...], segments: int) -> None:
     fewest, plan = fewest_planned(hub(*petals))
     assert len(plan) == fewest == segments == minimum(hub(*petals))
-    assert set().union(*(s.cells for s in plan)) == set(range(len(petals) + 1))
+    assert set().union(*(cells for _, cells in plan)) == set(range(len(petals) + 1))
 
 
 @examples(20)
@@ -69,13 +69,13 @@ def test_what_cannot_be_planned_cannot_be_painted(seed: int, cells: int, colors:
     """Against brute force, which paints with one strand, and the DFS with two."""
     instance = planar_graph(seed, cells, cells + 3, colors)
     fewest, plan = fewest_planned(instance)
-    assert set_cover(instance).bound <= fewest <= minimum(instance)
+    assert set_cover(color_regions(instance)).bound <= fewest <= minimum(instance)
     wide = solve(instance, Options(search_space="surface", strands=2), "dfs-cover")
     assert wide.segments is not None
     assert fewest <= wide.segments
     for cell in instance.cells:
-        assert sum(cell.id in segment.cells for segment in plan) == 1
-    assert all(segment.cells <= segment.region[1] for segment in plan)
+        assert sum(cell.id in cells for _, cells in plan) == 1
+    assert all(cells <= region[1] for region, cells in plan)
 
 
 def test_with_too_many_separations_a_planner_gives_up(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,12 +17,12 @@ from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, hub, hub_minimum
 from cellcolor.lab.families.registry import MEDIUM
-from cellcolor.solvers.bounds.cover import set_cover
+from cellcolor.solvers.bounds.cover import color_regions, set_cover
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import CpSatSolver
+from cellcolor.solvers.cpsat.dart_graph import split
 from cellcolor.solvers.cpsat.painting import division_of
 from cellcolor.solvers.cpsat.part import Part
-from cellcolor.solvers.cpsat.parts import split
 from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.interface import Options, Start
 from examples import examples
@@ -84,7 +84,9 @@ def test_without_any_time_there_is_a_division_all_the_same() -> None:
     found = solve(instance, Options(deadline=Deadline.after(0.0)))
     assert found.status == "feasible" and [bound.kind for bound in found.bounds] == ["strangers"]
     assert found.segments is not None and found.segments <= len(instance.cells)
-    assert 1 <= found.surface_lower_bound <= set_cover(instance).bound < found.segments
+    assert (
+        1 <= found.surface_lower_bound <= set_cover(color_regions(instance)).bound < found.segments
+    )
 
 
 @pytest.mark.parametrize("instance", [Instance("empty", (), (), ()), Instance("e", ("r",), (), ())])
@@ -127,7 +129,7 @@ def test_progress_comes_closer_and_never_passes_the_minimum() -> None:
 def part_of(instance: Instance) -> Part:
     """The largest part, covered."""
     options = Options()
-    part = Part(split(instance)[-1], options, Runner(options), lambda: None)
+    part = Part(*split(instance)[-1], options, Runner(options), lambda: None)
     part.cover(NEVER)
     return part
 

@@ -15,7 +15,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.solvers.dfs import ReferenceSolver
 from cellcolor.solvers.dfs.cell_schemes import CellScheme, cell_schemes
 from cellcolor.solvers.dfs.graph import GraphCell
-from cellcolor.solvers.dfs.zeros import zeros_fit
+from cellcolor.solvers.dfs.search import zeros_fit
 from cellcolor.solvers.interface import Options
 
 SOLVER = ReferenceSolver()
