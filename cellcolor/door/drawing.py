@@ -152,7 +152,9 @@ def show(
         solution = solution.solution
     subject = source.subject if isinstance(source, Result) else open_subject(source)
     usual = _usual_view(source, subject)
-    if view in ("segments", "why") and solution is None and isinstance(source, Result):
+    named = view is not None or any(one is not None for one in (color, vertex, solution, plan))
+    wanted = view if named else usual
+    if wanted in ("segments", "why") and solution is None and isinstance(source, Result):
         solution = source.solution
     seen, picture = view_of(
         view,
