@@ -131,18 +131,33 @@ def explain(scene: Path, as_json: bool, **search: Any) -> Exit:
     "Tell how far the best placements may be off before their lift-offs rise, tried up to so many "
     "metres.",
 )
+@option(
+    "--map",
+    PATH,
+    "Draw all placements that were tried, over the first two ranges.",
+    to="picture",
+    metavar="OUT.(png|svg)",
+)
 @json_option("Print a JSON object for each placement.")
 @shared("jobs", "seed", "time_limit")
-def place(scene: Path, tolerance: str | None, as_json: bool, **search: Any) -> Exit:
+def place(
+    scene: Path, tolerance: str | None, picture: Path | None, as_json: bool, **search: Any
+) -> Exit:
     """Print where the part should stand: the placements with the fewest lift-offs, proved.
 
     Many placements are tried on a coarse mesh, the best ones built and proved on the scene's own.
     """
     from cellcolor.cli.inputs import with_tolerance
+    from cellcolor.door.placing import kind_of_map, save_map
     from cellcolor.door.placing import place as placements_of
+    from cellcolor.files.writing import check_output
 
+    if picture is not None:
+        check_output(picture, kind_of_map(picture), [scene])
     with at_work(scene, "placing", _UNSOLVED) as tell:
         found = placements_of(with_tolerance(scene, tolerance), progress=tell, **search)
+        if picture is not None:
+            save_map(found, picture)
     moved = {"moved": "base"} if found.base else {}
     _print(scene, (moved | row.to_document() for row in found), found, as_json)
     proved = bool(found.best) and all(row.proved_for_surface for row in found.best)

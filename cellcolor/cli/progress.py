@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from cellcolor.cli.ending import INTERRUPTS
 from cellcolor.cli.terminal import shown
+from cellcolor.data.wording import count
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import naming
+
+_MINUTE = 60.0  # s
 
 
 @contextmanager
 def line_of(file: Path, work: str) -> Iterator[Callable[[str], None]]:
-    """A line with the time spent and what is being done, where somebody watches."""
+    """A line with the time spent and what is being done; without a terminal one each minute."""
     name = shown(file.name)
     if not sys.stderr.isatty():
-        yield lambda _: None
+        with _each_minute(f"{name}: {work}") as show:
+            yield lambda text: show(f"{name}: {text}")
         return
     from rich.console import Console
     from rich.progress import Progress as Display
@@ -62,6 +67,30 @@ def at_work(file: Path, work: str, late: str) -> Iterator[Callable[[str], None]]
             yield report
     except OutOfTime as error:
         raise OutOfTime(f"{file}: {late}") from error
+
+
+@contextmanager
+def _each_minute(text: str) -> Iterator[Callable[[str], None]]:
+    """What is being done, on standard error, where no line can be replaced."""
+    latest, ended = text, threading.Event()
+
+    def show(text: str) -> None:
+        nonlocal latest
+        latest = text
+
+    def tell() -> None:
+        minutes = 0
+        while not ended.wait(_MINUTE):
+            minutes += 1
+            print(f"{latest}, {count(minutes, 'minute')} so far", file=sys.stderr, flush=True)
+
+    teller = threading.Thread(target=tell, daemon=True)
+    teller.start()
+    try:
+        yield show
+    finally:
+        ended.set()
+        teller.join()
 
 
 @contextmanager

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cellcolor.deadline import Deadline
@@ -13,6 +14,8 @@ from cellcolor.door.asked import Work, begun
 from cellcolor.door.extras import extras_for
 from cellcolor.door.subject import scene_or_file
 from cellcolor.errors import CellcolorError, InputError
+from cellcolor.files.paths import path_of
+from cellcolor.files.writing import PNG, SVG, FileKind, Output, write
 from cellcolor.lab.workers import Task, Workers, as_they_end
 from cellcolor.questions.placements import PlacedMinimum, PlacementQuestion, Placements, Pose
 
@@ -66,6 +69,33 @@ def place(
     with workers as others:
         alone, many = partial(minima, None), partial(minima, others)
         return search_places(own, asked, alone, many, deadline, report)
+
+
+def kind_of_map(path: Path) -> FileKind:
+    """The kind of file for a map.
+
+    Raises:
+        InputError: no map has this suffix.
+    """
+    kind = {".png": PNG, ".svg": SVG}.get(path.suffix)
+    if kind is None:
+        raise InputError(str(path), None, "must end in .png or .svg")
+    return kind
+
+
+def save_map(found: Placements, path: str | PathLike[str]) -> None:
+    """Draw the placements that :func:`place` tried to a file .png or .svg. Needs the extra ``viz``.
+
+    Raises:
+        InputError: another suffix, only one placement was tried, the file is no picture of
+            cellcolor's, or it cannot be written.
+    """
+    file = path_of(path)
+    kind = kind_of_map(file)
+    with extras_for(f"a picture {file.suffix}"):
+        from cellcolor.pictures.placement_map import render_placements
+
+        write([Output(file, kind, [render_placements(found, file.suffix[1:])])])
 
 
 class _Minima:

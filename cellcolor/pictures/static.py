@@ -27,7 +27,7 @@ from cellcolor.pictures.picture import ClassedMesh, Line, Picture2D, Picture3D, 
 _LIGHT = np.array([0.3, -0.5, 0.81])
 _SMALLEST = 3.5
 """Points; what is written in smaller letters is not read."""
-_STYLE = {
+STYLE = {
     "font.size": 9,
     "svg.fonttype": "none",
     "svg.hashsalt": "cellcolor",
@@ -41,7 +41,7 @@ def render(picture: Picture2D | Picture3D, kind: str) -> bytes:
     Args:
         kind: ``png`` or ``svg``.
     """
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(11, 7), dpi=150)
         FigureCanvasAgg(figure)
         axes = figure.add_axes((0.01, 0.02, 0.62, 0.91))
@@ -53,7 +53,7 @@ def render(picture: Picture2D | Picture3D, kind: str) -> bytes:
 
 def render_drawing(picture: Picture2D) -> bytes:
     """An SVG of the drawing alone, for a page that has title, legend and notes itself."""
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7, 7))
         FigureCanvasAgg(figure)
         _draw(figure.add_axes((0.0, 0.0, 1.0, 1.0)), picture)
