@@ -69,7 +69,7 @@ def test_a_valid_one(scene: Path, tmp_path: Path, capsys: Capture) -> None:
     printed = capsys.readouterr().out
     assert printed.startswith(f"{path}: valid\n  2 strokes, 1 lift-off, ")
     assert "fewest lift-offs on this surface, proved: 0; 1 more announced, 0 more not" in printed
-    assert "covered 100.00%" in printed
+    assert "within 15 mm of a pass 100.00%" in printed
     for timed in (True, False):
         other = table(tmp_path / "t.csv", trajectory, timed=timed)
         assert run("check", scene, other, "--json") == 0

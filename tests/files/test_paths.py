@@ -17,7 +17,6 @@ FUNCTIONS: dict[str, Any] = {
     "read": cellcolor.read,
     "build": cellcolor.build,
     "check": lambda name: cellcolor.check("ring", name),
-    "start": lambda name: cellcolor.solve("ring", start=name),
     "save": RESULT.save,
     "plot": lambda name: RESULT.plot(name),
     "drawing": lambda name: RESULT.plot().save(name),

@@ -59,7 +59,7 @@ def wait_for_time(page: Any, seconds: float) -> None:
 def test_warnings_of_the_scene_are_on_the_page() -> None:
     built = report().built
     for notes in ((), ("the tool points back",)):
-        noted = replace(built, report=replace(built.report, notes=notes))
+        noted = replace(built, prepared=replace(built.prepared, notes=notes))
         cards = [card for card in cards_of(report(built=noted)) if card.title == "Warnings"]
         assert [card.paragraphs for card in cards] == ([notes] if notes else [])
 

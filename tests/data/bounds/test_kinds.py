@@ -107,7 +107,7 @@ def test_a_new_kind_is_on_the_page(toy: BoundKind) -> None:
     bounds = (Bound("apart", segments, "surface"),)
     solution = replace(made.solution, bounds=bounds)
     decomposition = made.result.subject.decomposition
-    report = MotionReport(made.built, decomposition, solution, None, None, (), None)
+    report = MotionReport(made.built, decomposition, solution, None, None, None)
     (card,) = [card for card in cards_of(report) if card.title.startswith("Why not fewer")]
     assert card.rows[1:] == (
         (str(segments), "apart", f"Each cell has colors of its own. {toy.objective}"),
