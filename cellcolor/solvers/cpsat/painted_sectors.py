@@ -6,6 +6,7 @@ tells whether it has come apart, so that thousands of changes a second are possi
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from cellcolor.deadline import Deadline
@@ -114,25 +115,41 @@ class PaintedSectors:
     def _fragments(
         self, number: int, near: dict[int, list[int]], starts: list[int]
     ) -> Iterator[list[int]]:
-        """What a segment has come apart into, all but one piece.
+        """What a segment has come apart into, all but one piece, the largest as a rule.
 
-        From a place where it lost nodes a flood rises until it has met all the other places, which
-        is soon as a rule. One that cannot rise any more is a piece.
+        From each place where it lost nodes a flood rises, all at the same pace. Two that meet are
+        one; one that cannot rise is a piece. The last one that is left needs not be followed.
         """
         segment = self.segment
-        left = dict.fromkeys(starts)
+        flood_of = {node: flood for flood, node in enumerate(starts)}
+        found = [[node] for node in starts]
+        rising = [deque(nodes) for nodes in found]
+        within = list(range(len(starts)))
+        left = dict.fromkeys(within)
         while len(left) > 1:
-            first, _ = left.popitem()
-            found, seen = [first], {first}
-            for node in found:
-                for other in near[node]:
-                    if other not in seen and segment[other] == number:
-                        seen.add(other)
-                        found.append(other)
-                        left.pop(other, None)
-                if not left:
-                    return
-            yield found
+            for flood in list(left):
+                if flood not in left or len(left) == 1:
+                    continue
+                if not rising[flood]:
+                    del left[flood]
+                    yield found[flood]
+                    continue
+                for other in near[rising[flood].popleft()]:
+                    if segment[other] != number:
+                        continue
+                    met = flood_of.get(other)
+                    if met is None:
+                        flood_of[other] = flood
+                        found[flood].append(other)
+                        rising[flood].append(other)
+                        continue
+                    while within[met] != met:
+                        met = within[met]
+                    if met != flood:
+                        within[met] = flood
+                        found[flood] += found[met]
+                        rising[flood] += rising[met]
+                        del left[met]
 
     def _find_regions(self, deadline: Deadline) -> None:
         """Number the color regions: a node's region says its color, and where it can spread to."""
