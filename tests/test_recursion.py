@@ -16,6 +16,7 @@ import pytest
 import cellcolor
 
 ALLOWED = {
+    ("frontend/relaxing.py", "_contact_of_links"): "twice: all links, then each pair of them",
     ("files/validation.py", "plain"): "how deeply the annotations of a dataclass nest",
     ("data/value.py", "_plain"): "how deeply the annotations of a dataclass nest",
     ("data/value.py", "members_of"): "likewise",

@@ -20,6 +20,7 @@ from cellcolor.tool_paths.overlap import Overlap, clipped, owned
 from cellcolor.tool_paths.refused import Refusals, RefusedPlace, without_refused
 from cellcolor.tool_paths.region import Region, Segments, regions_of
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
+from cellcolor.tool_paths.rounding import Line, rounded
 from cellcolor.tool_paths.spurs import with_spurs
 from cellcolor.tool_paths.triangles import Triangles
 
@@ -115,8 +116,8 @@ def cover(
             cause = "a part smaller than a quarter of the spacing squared"
             uncovered.append(Uncovered(region.segment, area, place, cause))
             continue
-        laid, own, left = _better(lay, part, region.segment, spacing_m, deadline)
-        path, beside = laid.path(region.segment, region.color)
+        line, own, left = _better(lay, part, region.segment, spacing_m, deadline)
+        path, beside = line.path(region.segment, region.color)
         paths.append(path)
         along_border.append(beside)
         measures.append(own)
@@ -165,15 +166,15 @@ def _parts(
 
 def _better(
     lay: Pattern, part: Triangles, segment: int, spacing: float, deadline: Deadline
-) -> tuple[Laid, PathMeasures, list[Uncovered]]:
-    """The pattern's path, or one along the part with spurs if that visits it less often.
+) -> tuple[Line, PathMeasures, list[Uncovered]]:
+    """The pattern's line, or one along the part with spurs if that visits it less often.
 
     In a part that is hardly wider than the spacing, loops go over most places twice.
     """
 
-    def measured(laid: Laid) -> tuple[Laid, PathMeasures, list[Uncovered]]:
-        laid = with_spurs(laid, spacing, deadline)
-        return laid, *measure(laid, segment, spacing)
+    def measured(laid: Laid) -> tuple[Line, PathMeasures, list[Uncovered]]:
+        line = rounded(with_spurs(laid, spacing, deadline), spacing, deadline)
+        return line, *measure(line, segment, spacing)
 
     first = measured(lay(part, spacing, deadline))
     wide = 2 * first[1].area_m2 > _NARROW * spacing * first[1].border_m

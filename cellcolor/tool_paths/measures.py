@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, numbered
 from cellcolor.mesh.triangle_mesh import grouped
-from cellcolor.tool_paths.interface import Laid
+from cellcolor.tool_paths.rounding import Line
 from cellcolor.tool_paths.triangles import Triangles
 
 _SAMPLES = 4000  # at which visits are counted, for one path
@@ -64,18 +64,18 @@ class PathMeasures:
         return f"{self.length_m:.2f} m, {100 * self.covered:.2f} % covered, {visits}"
 
 
-def measure(laid: Laid, segment: int, spacing: float) -> tuple[PathMeasures, list[Uncovered]]:
+def measure(line: Line, segment: int, spacing: float) -> tuple[PathMeasures, list[Uncovered]]:
     """Measure a path, and find what it leaves uncovered."""
-    mesh = laid.mesh
-    distances = mesh.distances_from(np.unique(laid.walk))
+    mesh = line.mesh
+    distances = mesh.distances_from(*_beside(line))
     areas = mesh.vertex_areas
     area = float(areas.sum())
     measures = PathMeasures(
         area,
-        float(np.linalg.norm(np.diff(laid.points, axis=0), axis=1).sum()),
+        float(np.linalg.norm(np.diff(line.points, axis=0), axis=1).sum()),
         share_within(mesh, distances, 1.5 * spacing),
         share_within(mesh, distances, 0.75 * spacing),
-        float(visits_of(laid, spacing).mean()),
+        float(visits_of(line, spacing).mean()),
         float(mesh.lengths[mesh.triangles_at == 1].sum()),
     )
     far = distances > 0.75 * spacing
@@ -106,15 +106,29 @@ def share_within(mesh: Triangles, distances: Array, most: float) -> float:
     return min(1.0, float(np.average(share, weights=mesh.areas)))
 
 
-def visits_of(laid: Laid, spacing: float) -> Index:
+def _beside(line: Line) -> tuple[Index, Array]:
+    """The corners of all triangles that a path lies in, and how far it is from each, m."""
+    corners = line.mesh.corners[line.triangles]
+    start, step = line.points[:-1, None], np.diff(line.points, axis=0)[:, None]
+    off = line.mesh.points[corners] - start
+    length = np.maximum((step**2).sum(axis=2), 1e-300)
+    share = np.clip((off * step).sum(axis=2) / length, 0.0, 1.0)
+    far = np.linalg.norm(off - share[:, :, None] * step, axis=2).ravel()
+    vertices, number = np.unique(corners, return_inverse=True)
+    nearest = np.full(len(vertices), np.inf)
+    np.minimum.at(nearest, number.ravel(), far)
+    return vertices, nearest
+
+
+def visits_of(line: Line, spacing: float) -> Index:
     """How many passes come within half a spacing of each of several places, even by area."""
-    mesh = laid.mesh
+    mesh = line.mesh
     rng = np.random.default_rng(0)
     chosen = rng.choice(len(mesh.corners), _SAMPLES, p=mesh.areas / mesh.areas.sum())
     shares = rng.dirichlet((1.0, 1.0, 1.0), _SAMPLES)[:, :, None]
     places = (mesh.points[mesh.corners[chosen]] * shares).sum(axis=1)
     outward = (mesh.normals[mesh.corners[chosen]] * shares).sum(axis=1)
-    points, normals = _sampled(laid.points, laid.normals, spacing / _FINE)
+    points, normals = _sampled(line.points, line.normals, spacing / _FINE)
     near = cKDTree(points).query_ball_point(places, spacing / 2, return_sorted=True)
     place = np.repeat(np.arange(len(places)), [len(found) for found in near])
     found = np.concatenate([np.array(rows, dtype=np.int64) for rows in near])

@@ -107,8 +107,14 @@ FAULTS: dict[str, Callable[[Path], Scene]] = {
     "cuspidal": lambda _: cuspidal_scene(),
 }
 
-# Warnings of the table; test_far_shapes.py and test_tool_sense.py bring them about.
-WARNINGS = {"m from its joint", "points back to the flange", "back into the arm"}
+# Others of the table; test_far_shapes.py and test_tool_sense.py bring them about.
+WARNINGS = {
+    "m from its joint",
+    "m from the link's others",
+    "looks like millimeters",
+    "points back to the flange",
+    "back into the arm",
+}
 
 
 def refusals() -> list[str]:

@@ -155,9 +155,9 @@ def test_what_is_listed_is_in_the_ranges_although_the_scene_is_not() -> None:
     """The part stands at x = 0.465 m."""
     found = place(x=(0.3, 0.36), y=None, cover=0.5)
     assert found.best
-    assert found.here.value("x") == pytest.approx(0.465)
+    assert found.here.pose[0] == pytest.approx(0.465)
     # The first one tried is the scene's own placement, on the coarse mesh.
-    assert all(0.3 <= row.value("x") <= 0.36 for row in (*found.best, *found.tried[1:]))
+    assert all(0.3 <= row.pose[0] <= 0.36 for row in (*found.best, *found.tried[1:]))
 
 
 def test_nothing_is_listed_where_the_arm_does_not_reach(capsys: pytest.CaptureFixture[str]) -> None:

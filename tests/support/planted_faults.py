@@ -149,7 +149,8 @@ def swapped(prepared: PreparedScene, trajectory: Trajectory, random: Random) -> 
     apart = np.linalg.norm(changed.points - poses.tip, axis=1)
     turned = np.linalg.norm(changed.normals + poses.tool_axis, axis=1)
     (wrong,) = np.nonzero((apart > 1e-4) | (turned > math.radians(0.1)))
-    return Planted(changed, "pose", None, range(int(wrong[0]), int(wrong[0]) + 1))
+    joint = trajectory.joint_names[i] if member == "joints" else None
+    return Planted(changed, "pose", joint, range(int(wrong[0]), int(wrong[0]) + 1))
 
 
 def backwards(prepared: PreparedScene, trajectory: Trajectory, random: Random) -> Planted:  # noqa: ARG001

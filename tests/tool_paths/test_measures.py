@@ -12,6 +12,7 @@ from cellcolor.lab.families.meshes import grid_faces
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.measures import measure
 from cellcolor.tool_paths.region import regions_of
+from cellcolor.tool_paths.rounding import line_of
 from cellcolor.tool_paths.triangles import Triangles
 
 
@@ -39,7 +40,7 @@ def lines(rows: range, columns: int) -> list[int]:
 def test_parallel_lines_pass_once() -> None:
     # 1 m wide, 41 rows: lines at 0.05 m, 0.15 m, … with a spacing of 0.1 m.
     laid = Laid(grid(41, 161, 0.025), lines(range(2, 40, 4), 161))
-    found, left = measure(laid, 0, 0.1)
+    found, left = measure(line_of(laid), 0, 0.1)
     assert found.area_m2 == pytest.approx(4.0) and found.border_m == pytest.approx(10.0)
     assert found.length_m == pytest.approx(10 * 4.0 + 9 * 0.1)
     assert found.covered == found.covered_wide == 1.0 and not left
@@ -49,14 +50,14 @@ def test_parallel_lines_pass_once() -> None:
 
 def test_a_stretch_walked_twice_is_visited_twice() -> None:
     once = lines(range(2, 40, 4), 161)
-    found, _ = measure(Laid(grid(41, 161, 0.025), [*once, *once[-2::-1]]), 0, 0.1)
+    found, _ = measure(line_of(Laid(grid(41, 161, 0.025), [*once, *once[-2::-1]])), 0, 0.1)
     # Back the same way: two passes everywhere, one at the end, where it turns round.
     assert 1.95 < found.mean_visits < 2.1
 
 
 def test_one_line_covers_a_strip() -> None:
     laid = Laid(grid(41, 161, 0.025), lines(range(20, 21), 161))
-    found, left = measure(laid, 0, 0.1)
+    found, left = measure(line_of(laid), 0, 0.1)
     # Of a metre across it has 0.15 m and 0.075 m on either side.
     assert found.covered_wide == pytest.approx(0.3, abs=1e-6)
     assert found.covered == pytest.approx(0.15, abs=1e-6)
@@ -79,7 +80,9 @@ def test_circles_on_a_disc() -> None:
     for ring in (4, 14, 24, 34):
         walk += [between * around for between in range(ring - 9, ring)] if walk else []
         walk += [ring * around + k % around for k in range(around + 1)]
-    found, left = measure(Laid(Triangles(points, faces, up, np.arange(len(faces))), walk), 0, 0.1)
+    found, left = measure(
+        line_of(Laid(Triangles(points, faces, up, np.arange(len(faces))), walk)), 0, 0.1
+    )
     length = sum(2 * 60 * 2 * r * np.sin(np.pi / around) for r in (0.05, 0.15, 0.25, 0.35))
     assert found.length_m == pytest.approx(length + 3 * 0.1)
     # All within 0.05 m of a circle, but for the outermost 0 m: the disc is 0.4 m.
@@ -100,7 +103,7 @@ def test_the_far_side_of_a_slit_is_not_covered() -> None:
     at = np.flatnonzero(np.abs(mesh.points[:, 0] - 0.45) < 1e-9)
     order = at[np.argsort(mesh.points[at, 1])]
     assert all(graph[a, b] > 0 for a, b in pairwise(order.tolist()))
-    found, _ = measure(Laid(mesh, order.tolist()), 0, 0.1)
+    found, _ = measure(line_of(Laid(mesh, order.tolist())), 0, 0.1)
     # 0.075 m on the left, 0.025 m up to the slit, and next to nothing round its end.
     assert found.covered == pytest.approx(0.1, abs=0.03)
 
@@ -116,6 +119,6 @@ def test_the_back_of_a_sheet_is_not_covered() -> None:
     rim += [[a + 1, a + rows * columns, a + 1 + rows * columns] for a in range(columns - 1)]
     faces = np.vstack([front.corners, front.corners[:, ::-1] + rows * columns, rim])
     mesh = Triangles(points, faces, np.vstack([up, -up]), np.arange(len(faces)))
-    found, _ = measure(Laid(mesh, lines(range(1, 20, 2), columns)), 0, 0.1)
+    found, _ = measure(line_of(Laid(mesh, lines(range(1, 20, 2), columns))), 0, 0.1)
     assert found.covered == pytest.approx(0.5, abs=0.05)
     assert found.mean_visits == pytest.approx(0.5, abs=0.05)

@@ -41,7 +41,7 @@ _MOST_FRAMES = 4000
 _MOST_MARKS, _MOST_DOTS = 40, 12  # of faults, and of left-out places
 _STOPS = 20  # at which the part beside the tool is to be seen
 _CONTACT = "#00508F"
-_LEFT_OUT = "left out, the largest"  # what the legend calls the dots
+_LEFT_OUT = "not covered, the largest"  # what the legend calls the dots
 
 
 def report_data(report: MotionReport) -> dict[str, Any]:
