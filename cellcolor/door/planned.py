@@ -200,7 +200,7 @@ class PlannedScene(UnfinishedPlan):
     @property
     def complete(self) -> bool:
         """Whether all that was asked for is there: answers, and the program of a controller."""
-        asked = self.built.prepared.setup.controller is not None
+        asked = self.built.scene.setup.controller is not None
         return not self.unanswered and not (asked and why_no_program(self._motion()))
 
     def _motion(self, export_step_s: float | None = None) -> PlannedMotion:
@@ -215,8 +215,8 @@ class PlannedScene(UnfinishedPlan):
             step_s=export_step_s,
             # A tool that stands off presses on nothing.
             force_n=0.0 if task.stand_off_m else task.normal_force_n,
-            controller=prepared.setup.controller,
-            led=bool(prepared.setup.motion and prepared.setup.motion.lead_m),
+            controller=prepared.scene.setup.controller,
+            led=bool(prepared.scene.setup.motion and prepared.scene.setup.motion.lead_m),
             part=prepared.scene.placement.matrix,
         )
 

@@ -30,7 +30,6 @@ from cellcolor.frontend.reach.sheets import in_sheets
 from cellcolor.frontend.reach.validity import Judge
 from cellcolor.frontend.reach.validity_tests import Workplace
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.sizes import check_points
 
 
@@ -69,11 +68,6 @@ class PreparedScene(Workplace):
     def __reduce__(self) -> tuple[Any, ...]:
         # Models of Pinocchio's cannot be pickled: where it is unpickled the scene is read again.
         return _prepared_on, (self.scene, self.surface)
-
-    @property
-    def setup(self) -> Setup:
-        """The scene's, which may ask for another motion than the arm was prepared with."""
-        return self.scene.setup
 
     @property
     def judge(self) -> Judge:

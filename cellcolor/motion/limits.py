@@ -24,7 +24,7 @@ def motion_of(prepared: PreparedScene) -> Motion:
             tool retracts less than it has to keep clear, a tool that touches is asked for leads, or
             the arm is planar.
     """
-    setup, robot = prepared.setup, prepared.robot
+    setup, robot = prepared.scene.setup, prepared.robot
     with naming(setup.file):
         if robot.task.plane:
             message = "a planar arm does not lift its tool off the part, so no motion is planned"

@@ -44,7 +44,7 @@ def with_best_posture(
     """
     if solution.cells is None:
         return solution
-    prefer, motion = built.prepared.setup.prefer, built.prepared.setup.motion
+    prefer, motion = built.scene.setup.prefer, built.scene.setup.motion
     home = None if motion is None or motion.home is None else np.array(motion.home)
     if home is None or prefer.posture == "well-conditioned":
         branch = np.array(built.color_branch, dtype=np.intp)

@@ -73,7 +73,7 @@ def paint_scene(
     """
     prepared = built.prepared
     clock = StageClock(deadline, progress)
-    motion = prepared.setup.motion
+    motion = prepared.scene.setup.motion
     if tool_radius_m is None and motion is not None:
         tool_radius_m = motion.tool_radius_m
     minima: list[int] = []

@@ -59,7 +59,11 @@ def check_trajectory(
         TooLarge: surface or trajectory would not fit into memory.
     """
     report, prepared = progress or (lambda _: None), built.prepared
-    robot, motion, direction = prepared.robot, prepared.setup.motion, prepared.robot.task.direction
+    robot, motion, direction = (
+        prepared.robot,
+        prepared.scene.setup.motion,
+        prepared.robot.task.direction,
+    )
     _check_mesh(built)
     _check_arm(prepared, trajectory)
     faults = FaultList(trajectory, timed)
@@ -164,7 +168,7 @@ def _check_arm(prepared: PreparedScene, trajectory: Trajectory) -> None:
 
 
 def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> JointLimits:
-    robot, setup, motion = prepared.robot, prepared.setup, prepared.setup.motion
+    robot, setup, motion = prepared.robot, prepared.scene.setup, prepared.scene.setup.motion
     lower: Array | None = robot.lower
     upper: Array | None = robot.upper
     if not setup.constraints.collision:
