@@ -20,7 +20,6 @@ Pair = tuple[Body, Body | Shape, float]
 """A body, another one or what stands still, and how near (m) they must not come."""
 
 _ROUGH = 0.0003  # m; python-fcl's distances of flat cylinders and cones are off by so much
-_WHETHER = fcl.CollisionRequest()  # nothing else is asked for
 _PRIMITIVES = {
     "box": fcl.Box,
     "sphere": fcl.Sphere,

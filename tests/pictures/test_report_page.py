@@ -231,7 +231,7 @@ def test_the_arm_is_drawn_and_moves(page_file: Path) -> None:
         seen.append(view.screenshot())
         assert len(set(seen)) == 3
         assert page.locator("#overlay .dot").count() == len(stand_in().trajectory.left_out) > 0
-        page.locator("#legend button", has_text="left out").click()
+        page.locator("#legend button", has_text="not covered").click()
         page.locator("#overlay .dot").wait_for(state="hidden")
         assert faults == []
 
