@@ -107,8 +107,8 @@ class Judge:
         asked = configurations.reshape(-1, joints)
         count, points = len(asked), len(self.tracked_steps)
         # Of millions the ends of all bodies are a gigabyte: there is to be no second copy.
-        # A solid has four times the points of a capsule, which single precision makes up for: a
-        # tenth of a micrometer does not matter to how far bodies move.
+        # Solids have many points, which single precision makes up for: a tenth of a micrometer does
+        # not matter to how far bodies move.
         place = np.float32 if self._workplace.robot.has_solids else np.float64
         kept = 8 * joints + 9 + 24 * points
         check_memory(count * kept, f"judging {count:,} configurations of the arm")
@@ -137,15 +137,6 @@ class Judge:
         judge = copy(self)
         judge._tests = tuple(test for test in self._tests if test.name in names)
         return judge
-
-    def all_failures(self, configurations: Array) -> dict[str, Mask]:
-        """Which configurations (k, joints) fail each test, also where they fail another one."""
-        turned = turned_into_limits(self._workplace.robot, configurations)
-        postures = Postures.of(self._workplace, turned)
-        failed: dict[str, Mask] = {}
-        for test in self._tests:
-            failed[test.name] = failed.get(test.name, False) | test.failed(postures)
-        return failed
 
     def _first_failures(self, postures: Postures) -> NDArray[np.uint8]:
         """The code (k,) of the first test that each posture fails."""
