@@ -147,7 +147,7 @@ def side_of(surface: Surface, outside: Outside | None, cover: CoverChoice | None
     Raises:
         InputError: the part has no such side.
     """
-    from cellcolor.frontend.parts.sides import facing, pieces, shell_sides, thickness
+    from cellcolor.frontend.parts.cover import facing, pieces, shell_sides, thickness
 
     mesh = surface.mesh
     thick = thickness(mesh)
@@ -185,7 +185,7 @@ def _side(mesh: TriangleMesh, sides: list[Mask], outside: Outside | None) -> tup
 
     Without a wish that is the outer one; of a flat shell the one that faces up and to the robot.
     """
-    from cellcolor.frontend.parts.sides import facing
+    from cellcolor.frontend.parts.cover import facing
 
     first, second = (facing(mesh, side) for side in sides)
     areas = [float(mesh.areas[side].sum()) for side in sides]
@@ -204,7 +204,7 @@ def _flipped(mesh: TriangleMesh, outside: Outside | None) -> bool:
     Raises:
         InputError: it is closed, or faces every way.
     """
-    from cellcolor.frontend.parts.sides import facing
+    from cellcolor.frontend.parts.cover import facing
 
     if outside is None:
         return False
@@ -221,7 +221,7 @@ def _flipped(mesh: TriangleMesh, outside: Outside | None) -> bool:
 
 def _cover(mesh: TriangleMesh, faces: Mask) -> str:
     """The scene's table for one side."""
-    from cellcolor.frontend.parts.sides import SHARP_RAD, inner_point
+    from cellcolor.frontend.parts.cover import SHARP_RAD, inner_point
 
     seed = [round(x, 6) + 0.0 for x in inner_point(mesh, faces).tolist()]
     return (
