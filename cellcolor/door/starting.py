@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cellcolor.deadline import Deadline, TimeLimit
-from cellcolor.door.extras import require_motion
+from cellcolor.door.installed import require_motion
 from cellcolor.door.parts import inspect
 from cellcolor.door.starting_choices import (
     CoverChoice,
