@@ -94,8 +94,7 @@ def plan(
     from cellcolor.frontend.build import StageClock
     from cellcolor.frontend.prepared import prepare
     from cellcolor.frontend.scene import Scene
-    from cellcolor.motion.home import home_of
-    from cellcolor.motion.limits import motion_of
+    from cellcolor.motion.limits import home_of, motion_of
 
     clock = StageClock(deadline, progress)
     given = Scene.read(given_or_file) if isinstance(given_or_file, Path) else given_or_file
