@@ -9,7 +9,7 @@ from forged_certificates import FORGERIES, Original, forge, large, small
 from forged_truth import claims_truth
 
 from cellcolor.checker.certificates import verify_bound
-from cellcolor.checker.color_regions import regions_of_cells
+from cellcolor.checker.groups import regions_of_cells
 from cellcolor.data.bounds import Bound
 
 pytestmark = pytest.mark.second

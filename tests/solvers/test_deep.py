@@ -9,10 +9,9 @@ from itertools import pairwise
 import pytest
 
 from cellcolor.checker.certificates import verify_bound
-from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.division import check_solution
-from cellcolor.checker.drawable import can_be_drawn
-from cellcolor.checker.scheme_rules import PaintedCell, unavoidable_join_on_loops
+from cellcolor.checker.groups import regions_of_cells
+from cellcolor.checker.scheme_rules import PaintedCell, can_be_drawn, unavoidable_join_on_loops
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
