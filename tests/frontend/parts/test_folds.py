@@ -11,7 +11,7 @@ from scipy.spatial.distance import pdist
 
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.frontend.parts.mending import crossing_pairs
-from cellcolor.frontend.parts.unfolding import fold_angle, folds, unfolded
+from cellcolor.frontend.parts.remeshing import fold_angle, folds, unfolded
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from examples import examples
 

@@ -12,16 +12,16 @@ from shipped import SCENES, WOK
 
 from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, build_surface
-from cellcolor.frontend.contact.movement import longest_steps
 from cellcolor.frontend.contact.obstacle import CylinderObstacle
-from cellcolor.frontend.parts.shapes import disc_mesh
-from cellcolor.frontend.parts.surface import Surface, along_edges
-from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.reach.between import (
+from cellcolor.frontend.contact.tip import longest_steps
+from cellcolor.frontend.links import (
     at_domain_border,
     remains_valid,
     strides,
 )
+from cellcolor.frontend.parts.shapes import disc_mesh
+from cellcolor.frontend.parts.surface import Surface, along_edges
+from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
 
 
