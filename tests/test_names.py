@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import cellcolor
-from cellcolor.door import extras
+from cellcolor.door import installed
 
 ROOT = Path(__file__).parents[1]
 TEXTS = [
@@ -26,7 +26,7 @@ DISTRIBUTION = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["proj
 
 
 def test_the_distribution_is_not_somebody_elses() -> None:
-    assert DISTRIBUTION == extras.DISTRIBUTION != "cellcolor"
+    assert DISTRIBUTION == installed.DISTRIBUTION != "cellcolor"
 
 
 def found_in(pattern: str, texts: list[Path]) -> list[tuple[Path, str]]:
@@ -63,13 +63,13 @@ def test_the_readme_installs_what_its_commands_need() -> None:
 def test_messages_name_it(tmp_path: Path) -> None:
     for package, extra in (("matplotlib", "viz"), ("pinocchio", "frontend")):
         with pytest.raises(Exception, match=f"pip install '{re.escape(DISTRIBUTION)}.{extra}.'"):  # noqa: SIM117
-            with extras.extras_for(tmp_path):
+            with installed.extras_for(tmp_path):
                 raise ModuleNotFoundError(name=f"{package}.part")
 
 
 def test_extras_that_messages_name_exist() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
-    assert set(extras._EXTRAS.values()) <= set(project["optional-dependencies"])
+    assert set(installed._EXTRAS.values()) <= set(project["optional-dependencies"])
 
 
 def test_as_a_module() -> None:

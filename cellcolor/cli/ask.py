@@ -148,8 +148,8 @@ def place(
     Many placements are tried on a coarse mesh, the best ones built and proved on the scene's own.
     """
     from cellcolor.cli.inputs import with_tolerance
-    from cellcolor.door.placing import kind_of_map, save_map
-    from cellcolor.door.placing import place as placements_of
+    from cellcolor.door.asking import kind_of_map, save_map
+    from cellcolor.door.asking import place as placements_of
     from cellcolor.files.writing import check_output
 
     if picture is not None:

@@ -16,7 +16,7 @@ from cellcolor.cli.inputs import read_instance
 from cellcolor.cli.progress import progress_bar
 from cellcolor.cli.terminal import complain, say, say_lines, shown
 from cellcolor.data.wording import count
-from cellcolor.door.shipped import find_file, library
+from cellcolor.door.installed import find_file, library
 from cellcolor.errors import CellcolorError, InputError, SolverMissing
 from cellcolor.lab.runs.row import Row, disagreements
 from cellcolor.lab.runs.summary import summary_of_runs

@@ -28,9 +28,8 @@ from cellcolor.data.verdicts import (
 )
 from cellcolor.data.wording import count, lift_offs_of
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
-from cellcolor.door.leaving_out import left_alone
+from cellcolor.door.installed import find_claim, find_file
 from cellcolor.door.reading import format_of_claim, read_trajectory
-from cellcolor.door.shipped import find_claim, find_file
 from cellcolor.door.subject import Subject
 from cellcolor.errors import CellcolorError, InputError, naming
 from cellcolor.files.writing import is_folder_or_nothing
@@ -70,7 +69,7 @@ class Request:
         else:
             with input_file(STANDARD_INPUT) as copy:
                 subject = replace(read_subject(copy, deadline), path=None)
-        return left_alone(subject, self.left_alone)
+        return subject.left_alone(self.left_alone)
 
 
 def check_files(request: Request) -> Exit:

@@ -17,7 +17,7 @@ from cellcolor.cli.progress import stages_of
 from cellcolor.cli.terminal import complain
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.door.extras import extras_for
+from cellcolor.door.installed import extras_for
 from cellcolor.door.subject import Subject, open_subject, scene_or_file
 from cellcolor.errors import InputError, system_errors
 

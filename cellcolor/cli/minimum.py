@@ -207,7 +207,7 @@ def show(file: Path, claim: Path | None, output: Path, view: str | None, **of: A
     from cellcolor.cli.inputs import open_file
     from cellcolor.data.plan import Plan
     from cellcolor.door.drawing import draw, kind_of_picture, view_of
-    from cellcolor.door.extras import extras_for
+    from cellcolor.door.installed import extras_for
     from cellcolor.door.reading import format_of_claim
 
     inputs = [file, *filter(None, [claim])]

@@ -218,8 +218,7 @@ def plan(
     the setup's table [motion].
     """
     from cellcolor.cli.inputs import with_tolerance
-    from cellcolor.door.plan_files import check_folder
-    from cellcolor.door.planned import NothingCovered, PlanOutOfTime
+    from cellcolor.door.planned import NothingCovered, PlanOutOfTime, check_folder
     from cellcolor.door.planning import plan as planned_of
 
     check_folder(output, [scene])

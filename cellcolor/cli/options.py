@@ -126,7 +126,7 @@ class _Input(click.Path):
     """A file to be read, or the name of a shipped one."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
-        from cellcolor.door.shipped import find_file
+        from cellcolor.door.installed import find_file
 
         return find_file(str(super().convert(value, param, ctx)))
 

@@ -148,7 +148,7 @@ def import_(source: Path, output: Path, corrections: tuple[str, ...]) -> Exit:
     """
     from cellcolor.data.imcgs import read_imcgs
     from cellcolor.data.instance import Instance
-    from cellcolor.door.shipped import library
+    from cellcolor.door.installed import library
 
     check_output(output, kind_of_format(Instance.FORMAT), [source])
     instance = read_imcgs(source, corrections, output.name.removesuffix(".json"))
@@ -171,7 +171,7 @@ def library(as_json: bool) -> Exit:
     from dataclasses import asdict
 
     from cellcolor.cli.tables import console, table_of
-    from cellcolor.door.shipped import library as shipped
+    from cellcolor.door.installed import library as shipped
 
     entries = shipped().index.entries
     if as_json:
@@ -223,7 +223,7 @@ def label(
     color. What is doubtful is listed.
     """
     from cellcolor.data.surface import LabelledSurface
-    from cellcolor.door.labelling import label as labelled
+    from cellcolor.door.reading import label as labelled
 
     check_output(output, kind_of_format(LabelledSurface.FORMAT), [source, *filter(None, [mesh])])
     with at_work(source, "matching", "not labelled: the time limit came first"):

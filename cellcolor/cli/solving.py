@@ -23,7 +23,7 @@ from cellcolor.data.schemes import scheme_line
 from cellcolor.data.solution import Division, Solution
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.door.result import Result
+from cellcolor.door.subject import Result
 from cellcolor.errors import CellcolorError, InputError, system_errors
 from cellcolor.files.writing import (
     Output,

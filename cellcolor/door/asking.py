@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from functools import partial
 from os import PathLike
-from typing import TYPE_CHECKING, Unpack
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Unpack
 
-from cellcolor.door.asked import SearchAndTell, options_of
-from cellcolor.door.extras import extras_for
-from cellcolor.door.leaving_out import left_alone as without_place
+from cellcolor.deadline import Deadline
+from cellcolor.door.asked import SearchAndTell, Work, begun, options_of
+from cellcolor.door.installed import extras_for
 from cellcolor.door.subject import Solvable, open_subject, scene_or_file
+from cellcolor.errors import CellcolorError, InputError
+from cellcolor.files.paths import path_of
+from cellcolor.files.writing import PNG, SVG, FileKind, Output, write
+from cellcolor.lab.workers import Task, Workers, as_they_end
 from cellcolor.questions.front import Front
+from cellcolor.questions.placements import PlacedMinimum, PlacementQuestion, Placements, Pose
 from cellcolor.questions.places import Place
 
 if TYPE_CHECKING:
@@ -40,7 +49,7 @@ def tradeoff(
         OutOfTime: the time limit came before any division was found.
     """
     options, progress = options_of(search), search.get("progress")
-    subject = without_place(open_subject(source, options.deadline, progress), left_alone)
+    subject = open_subject(source, options.deadline, progress).left_alone(left_alone)
     from cellcolor.questions.tradeoff import front_of  # imports a solver
 
     return front_of(subject.graph(options.deadline), options, progress)
@@ -72,3 +81,163 @@ def explain(
         from cellcolor.questions.explaining import explained
 
     return explained(prepare(scene, options.deadline), options, search.get("progress"))
+
+
+_BATCH = 32  # placements per task; reading the scene takes as long as one or two of them
+_ATTEMPTS = 2  # how often a task is tried whose process was lost
+_ENDING = 10.0  # s that a process may take beyond its time
+_ALL_DAY = 86_400.0  # s, the limit of a process if there is no time limit
+
+
+def place(
+    scene: str | PathLike[str] | Scene,
+    *,
+    jobs: int | Workers = 1,
+    **question: Any,
+) -> Placements:
+    """Look for placements of a scene's part that need fewer lift-offs, and prove the best ones.
+
+    Needs the extra ``frontend``. The result is the same with any number of jobs.
+
+    Args:
+        scene: its file, its shipped name, or the value.
+        jobs: processes at a time, or who does the work.
+        **question: the ranges ``x``, ``y``, ``z``, ``roll``, ``pitch`` and ``yaw``, and whatever
+            else :class:`~cellcolor.questions.placements.PlacementQuestion` and
+            :class:`~cellcolor.door.asked.Work` have.
+
+    Raises:
+        InputError: the scene cannot be used; or a range, a share or a number is none.
+        OutOfTime: the time limit came before the scene itself was solved.
+    """
+    work: Any = {name: question.pop(name) for name in Work.__annotations__ if name in question}
+    deadline, report = begun(work)
+    scene = scene_or_file(scene)
+    asked = PlacementQuestion.of(**question)
+    if isinstance(jobs, int) and jobs < 1:
+        raise InputError(None, "jobs", f"must be 1 or more, is {jobs}")
+    with extras_for("the front end"):
+        from cellcolor.frontend.scene import Scene as SceneValue
+        from cellcolor.questions.searching_places import search_places
+
+    own: Scene = scene if isinstance(scene, SceneValue) else SceneValue.read(scene)
+    workers: AbstractContextManager[Workers | None] = nullcontext()
+    if not isinstance(jobs, int):
+        workers = jobs
+    elif jobs > 1:
+        workers = Workers(jobs)
+    minima = _Minima(asked, deadline, report)
+    with workers as others:
+        alone, many = partial(minima, None), partial(minima, others)
+        return search_places(own, asked, alone, many, deadline, report)
+
+
+def kind_of_map(path: Path) -> FileKind:
+    """The kind of file for a map.
+
+    Raises:
+        InputError: no map has this suffix.
+    """
+    kind = {".png": PNG, ".svg": SVG}.get(path.suffix)
+    if kind is None:
+        raise InputError(str(path), None, "must end in .png or .svg")
+    return kind
+
+
+def save_map(found: Placements, path: str | PathLike[str]) -> None:
+    """Draw the placements that :func:`place` tried to a file .png or .svg. Needs the extra ``viz``.
+
+    Raises:
+        InputError: another suffix, only one placement was tried, the file is no picture of
+            cellcolor's, or it cannot be written.
+    """
+    file = path_of(path)
+    kind = kind_of_map(file)
+    with extras_for(f"a picture {file.suffix}"):
+        from cellcolor.pictures.placement_map import render_placements
+
+        write([Output(file, kind, [render_placements(found, file.suffix[1:])])])
+
+
+class _Minima:
+    """Computes the minima of placements, possibly in other processes, each of them once.
+
+    Args:
+        question: whether the arm's base is moved instead of the part, and the seed.
+        deadline: for everything together.
+        report: is told how many placements are done.
+    """
+
+    def __init__(
+        self, question: PlacementQuestion, deadline: Deadline, report: Callable[[str], None]
+    ) -> None:
+        self._question, self._deadline, self._report = question, deadline, report
+        self._known: dict[tuple[str, Pose], PlacedMinimum] = {}
+        self._done = 0
+
+    def __call__(
+        self,
+        workers: Workers | None,
+        scene: Scene,
+        mesh: str,
+        poses: Sequence[Pose],
+        cover: float | None = None,
+    ) -> list[PlacedMinimum]:
+        """A row for each placement, in order; fewer if the deadline comes first.
+
+        Args:
+            workers: the processes that compute; None for this one.
+            scene: its own placement does not matter.
+            mesh: the name of this scene's mesh.
+            cover: the share that is enough, for bounds where nothing better is known; the same for
+                all placements of a mesh. None for whole builds.
+
+        Raises:
+            OutOfTime: the deadline came before the first.
+            CellcolorError: a task failed, or its process was lost in every attempt.
+        """
+        self._deadline.check()
+        slots = 1 if workers is None else workers.slots
+        known = {
+            pose: row
+            for (its, pose), row in self._known.items()
+            if its == mesh and (cover is not None or not row.at_least)
+        }
+        new = [pose for pose in dict.fromkeys(poses) if pose not in known]
+        size = min(_BATCH, -(-len(new) // slots) or 1)
+        parts = [new[at : at + size] for at in range(0, len(new), size)]
+        for rows in self._asked(workers, scene, parts, cover):
+            known |= {row.pose: row for row in rows}
+            self._known |= {(mesh, row.pose): row for row in rows}
+            self._done += len(rows)
+            self._report(f"{self._done} placements")
+        return [known[pose] for pose in poses if pose in known]
+
+    def _asked(
+        self,
+        workers: Workers | None,
+        scene: Scene,
+        parts: Sequence[Sequence[Pose]],
+        cover: float | None,
+    ) -> Iterator[list[PlacedMinimum]]:
+        """The rows of each part, in the order in which the parts are done."""
+        from cellcolor.questions.placing import minima_at
+
+        how = 1, self._question.seed, self._question.base, cover
+        if workers is None:
+            for part in parts:
+                yield minima_at(scene, part, self._deadline.left, *how)
+            return
+        lost = list(parts)
+        for attempt in range(1, _ATTEMPTS + 1):
+            left = self._deadline.left
+            most = min(left, _ALL_DAY) + _ENDING
+            tasks = [(part, Task(minima_at, (scene, part, left, *how), most)) for part in lost]
+            lost = []
+            for part, ended in as_they_end(workers, tasks):
+                if ended.end in ("done", "timeout", "stopped"):
+                    yield ended.value or []
+                elif ended.end == "failed" or attempt == _ATTEMPTS:
+                    raise CellcolorError(f"placements could not be tried: {ended.error}")
+                else:  # the process was lost; the work is repeated
+                    lost.append(part)

@@ -15,9 +15,8 @@ from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import check_solution
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
-from cellcolor.door.extras import extras_for
-from cellcolor.door.result import Result
-from cellcolor.door.subject import Solvable, Subject, open_subject
+from cellcolor.door.installed import extras_for
+from cellcolor.door.subject import Result, Solvable, Subject, open_subject
 from cellcolor.errors import InputError, naming
 from cellcolor.files.paths import path_of
 from cellcolor.files.writing import HTML, PNG, SVG, FileKind, Output, write

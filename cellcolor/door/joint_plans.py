@@ -17,7 +17,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.door.extras import extras_for
+from cellcolor.door.installed import extras_for
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
 from cellcolor.oracle import JointViolation

@@ -18,13 +18,10 @@ from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.data.wording import lift_offs_of
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.asked import Search
-from cellcolor.door.extras import extras_for
-from cellcolor.door.leaving_out import left_alone as without_place
+from cellcolor.door.installed import extras_for, find_claim
 from cellcolor.door.oracle import SECONDS, AnyPlan, Oracle
 from cellcolor.door.reading import ReadTrajectory, format_of_claim, read_trajectory
-from cellcolor.door.result import Result
-from cellcolor.door.shipped import find_claim
-from cellcolor.door.subject import Solvable, Subject, open_subject
+from cellcolor.door.subject import Result, Solvable, Subject, open_subject
 from cellcolor.oracle import ProvenRange, Verdict, prove
 from cellcolor.questions.places import Place
 
@@ -95,9 +92,9 @@ def check(
         claim = read_trajectory(claim)
     if isinstance(claim, (Trajectory, TrajectoryTable)):
         deadline = Deadline.of(time_limit)
-        subject = without_place(open_subject(instance, deadline), left_alone)
+        subject = open_subject(instance, deadline).left_alone(left_alone)
         return judge_trajectory(subject, claim, deadline)
-    subject = without_place(open_subject(instance), left_alone)
+    subject = open_subject(instance).left_alone(left_alone)
     subject.check_graph()
     graph = subject.graph()
     if isinstance(claim, Result):

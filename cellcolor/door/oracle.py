@@ -26,8 +26,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.door.asked import Search, options_of
 from cellcolor.door.joint_plans import AnyPath, PathColors, colors_of_joints, colors_of_path
 from cellcolor.door.reading import color_numbers, read_claim
-from cellcolor.door.result import Result
-from cellcolor.door.subject import Solvable, open_subject
+from cellcolor.door.subject import Result, Solvable, open_subject
 from cellcolor.errors import BeatenBound, InputError, TooLarge, naming
 from cellcolor.oracle import BetterPainting, PathVerdict, Proof, ProvenRange, Verdict, prove
 from cellcolor.oracle.improvement import better_painting, improvement_of

@@ -15,9 +15,8 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.asked import Work, begun
-from cellcolor.door.extras import require_motion
-from cellcolor.door.result import Result
-from cellcolor.door.subject import Solvable, open_subject
+from cellcolor.door.installed import require_motion
+from cellcolor.door.subject import Result, Solvable, open_subject
 from cellcolor.errors import InputError
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import Painted

@@ -12,7 +12,7 @@ import numpy as np
 from cellcolor.deadline import Deadline
 from cellcolor.door.asked import Telling, Work, begun
 from cellcolor.door.drawing import Drawing
-from cellcolor.door.extras import extras_for
+from cellcolor.door.installed import extras_for
 from cellcolor.errors import InputError, naming
 from cellcolor.files.paths import path_of
 

@@ -12,10 +12,8 @@ from typing import TYPE_CHECKING, Any
 from cellcolor.data.prices import check_share
 from cellcolor.data.wording import listed
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
-from cellcolor.door.asking import explain, tradeoff
-from cellcolor.door.extras import require_motion
-from cellcolor.door.leaving_out import rest_of
-from cellcolor.door.placing import place
+from cellcolor.door.asking import explain, place, tradeoff
+from cellcolor.door.installed import require_motion
 from cellcolor.door.planned import (
     NothingCovered,
     PlannedScene,
@@ -23,9 +21,8 @@ from cellcolor.door.planned import (
     UnfinishedPlan,
     axes_of,
 )
-from cellcolor.door.result import Result
-from cellcolor.door.solving import solve
-from cellcolor.door.subject import Subject, scene_or_file
+from cellcolor.door.solving import rest_of, solve
+from cellcolor.door.subject import Result, Subject, scene_or_file
 from cellcolor.errors import InputError, naming
 from cellcolor.questions.places import Place
 from cellcolor.solvers.interface import Options

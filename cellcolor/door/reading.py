@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from math import pi
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from cellcolor.configurations.files import read_joint_solutions
+from cellcolor.configurations.labelling import Conflicts, Labelling, from_configurations
 from cellcolor.data.instance import Instance
 from cellcolor.data.library_index import LibraryIndex
 from cellcolor.data.plan import Plan
@@ -20,11 +23,12 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable, read_trajectory_csv
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.data.value import Document, read_one_of
-from cellcolor.door.extras import extras_for
-from cellcolor.door.shipped import find_file
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.door.installed import extras_for, find_file
 from cellcolor.door.subject import is_scene
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import read_document, read_text
+from cellcolor.files.paths import path_of
 
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene, Setup
@@ -135,3 +139,51 @@ def color_numbers(surface: LabelledSurface, plan: Any) -> Any:
             color = number[color]
         colors.append(color)
     return colors
+
+
+def label(
+    source: str | PathLike[str],
+    *,
+    mesh: str | PathLike[str] | None = None,
+    conflicts: Conflicts = "refuse",
+    reach_m: float | None = None,
+    deadline: Deadline = NEVER,
+) -> Labelling:
+    """A labelled surface from a file of joint solutions.
+
+    Args:
+        source: ``.npz``, ``.json`` or ``.csv``
+            (:func:`~cellcolor.configurations.files.read_joint_solutions`).
+        mesh: an OBJ, PLY or STL file in m, for ``.csv``, whose vertices are numbered from 0 in the
+            order of this file.
+        conflicts: see :func:`~cellcolor.configurations.labelling.from_configurations`.
+        reach_m: of the arm, see there.
+        deadline: when to give up.
+
+    Raises:
+        InputError: see there; names the file.
+        OutOfTime: the deadline came first.
+    """
+    path = path_of(source)
+    own = None
+    if mesh is not None:
+        from cellcolor.frontend.parts.mesh_file import read_mesh
+
+        own = read_mesh(path_of(mesh), deadline)
+    found = read_joint_solutions(path, None if own is None else len(own[0]))
+    vertices, faces = (found.vertices, found.faces) if own is None else own
+    with naming(path):
+        assert vertices is not None  # only a CSV file has no mesh, and it was read with one
+        assert faces is not None
+        return from_configurations(
+            vertices,
+            faces,
+            found.configurations,
+            names=found.names,
+            limits=found.limits,
+            periods=2 * pi if found.periods is None else found.periods,
+            conflicts=conflicts,
+            reach_m=reach_m,
+            name=path.stem,
+            deadline=deadline,
+        )

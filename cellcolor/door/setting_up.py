@@ -12,12 +12,11 @@ import numpy as np
 from cellcolor.data.prices import check_change_over, check_share
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.asked import SearchAndTell, options_of
-from cellcolor.door.extras import extras_for
+from cellcolor.door.installed import extras_for
 from cellcolor.door.painting import paint
 from cellcolor.door.planned import PlannedScene
 from cellcolor.door.planning import plan
-from cellcolor.door.result import Result
-from cellcolor.door.subject import Subject, scene_or_file
+from cellcolor.door.subject import Result, Subject, scene_or_file
 from cellcolor.errors import InputError
 from cellcolor.questions.placements import PlacedMinimum, Placements, Pose
 from cellcolor.questions.set_ups import SetUpPlan

@@ -8,6 +8,8 @@ from math import degrees
 from os import PathLike
 from typing import TYPE_CHECKING, Unpack
 
+import numpy as np
+
 from cellcolor.data.instance import Instance
 from cellcolor.data.prices import check_share
 from cellcolor.data.solution import SearchSpace, Solution
@@ -15,9 +17,8 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.decomposition import decomposition_of
 from cellcolor.door.asked import SearchOfAPart, Work, begun, options_of
-from cellcolor.door.leaving_out import rest_of
-from cellcolor.door.result import Result
 from cellcolor.door.subject import (
+    Result,
     Solvable,
     Subject,
     build_scene,
@@ -25,6 +26,7 @@ from cellcolor.door.subject import (
     scene_or_file,
 )
 from cellcolor.errors import InputError
+from cellcolor.questions.places import Place
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import STRANDS, Options
 from cellcolor.solvers.registry import DEFAULT
@@ -32,6 +34,7 @@ from cellcolor.solvers.registry import DEFAULT
 if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult, Scene
 
+_FOR_FRONT = 0.5  # of the time that is left
 _BESIDE_SECONDS = 10.0  # there are many small cells, and the proof may take for ever
 
 
@@ -169,3 +172,51 @@ def _solved_beside(surface: LabelledSurface, options: Options) -> Solution | str
         return "no division was found in time"
     except InputError as error:
         return f"it cannot be solved, {error}"
+
+
+def rest_of(
+    subject: Subject, cover: float | None, place: Place | None, options: Options
+) -> tuple[Subject, tuple[str, ...], float]:
+    """A subject without what is left out on purpose.
+
+    Args:
+        cover: the share of the area that can be covered and is not left alone which has to be, 0 to
+            1; None for all of it. What is best left out is settled first, as by ``tradeoff``.
+        place: what must not be covered, see :meth:`Subject.left_alone`.
+        options: deadline, workers and seed of the search for what is best left out, which takes
+            half of the time that is left.
+
+    Returns:
+        What has to be covered, as a subject like any other; notes on what is left out, a sentence
+        each; and the share that has to be covered.
+
+    Raises:
+        InputError: the place is of another mesh, or there is no surface for it to be on; or no
+            division is known that covers as much.
+        OutOfTime: the deadline came before any division was known.
+    """
+    notes: tuple[str, ...] = ()
+    if place is not None:
+        whole = subject.surface
+        subject = subject.left_alone(place)
+        left = sorted(set(subject.surface.given_up) - set(whole.given_up))
+        share = whole.vertex_areas[left].sum() / whole.vertex_areas.sum()
+        notes = (f"{share:.1%} of the surface can be covered and is left alone on purpose.",)
+    if cover is None or subject.graph(options.deadline).nothing_to_cover:
+        return subject, notes, 1.0
+    from cellcolor.questions.tradeoff import front_of  # imports a solver
+
+    options = replace(options, deadline=options.deadline.share(_FOR_FRONT))
+    choice = front_of(subject.graph(options.deadline), options).fewest_for(cover)
+    why = f"{100 * cover:.1f} % of what can be covered is asked for"
+    notes += (f"{why}; covered with {choice}. The rest is left out on purpose.",)
+    return _without_cells(subject, choice.point.left_out), notes, choice.point.covered_share
+
+
+def _without_cells(subject: Subject, cells: tuple[int, ...]) -> Subject:
+    """The subject without some cells: on its surface, or in the graph where there is none."""
+    if not cells:
+        return subject
+    if subject.given_instance is not None:
+        return Subject(None, given_instance=subject.given_instance.without_cells(cells)[0])
+    return subject.without_vertices(np.isin(subject.decomposition.vertex_cell, cells))

@@ -7,10 +7,8 @@ import math
 import os
 import re
 import tomllib
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from itertools import product
 from os import PathLike
 from pathlib import Path
 from string import Template
@@ -19,15 +17,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cellcolor.deadline import Deadline, TimeLimit
-from cellcolor.door.extras import require_motion
+from cellcolor.door.installed import require_motion
 from cellcolor.door.parts import inspect
 from cellcolor.door.starting_choices import (
     CoverChoice,
     Outside,
+    best_place,
     fixed_line,
     fixed_of,
     home_of,
-    is_weightless,
     last_link,
     mount_line,
     side_of,
@@ -38,11 +36,9 @@ from cellcolor.files.paths import path_of
 from cellcolor.files.writing import FileKind, Output, check_output, is_folder_or_nothing, write
 
 if TYPE_CHECKING:
-    from cellcolor.arrays import Array, Mask
     from cellcolor.frontend.arm.robot import Robot
     from cellcolor.frontend.parts.inspection import Inspection
     from cellcolor.frontend.prepared import PreparedScene
-    from cellcolor.frontend.reach.validity import Verdicts
     from cellcolor.frontend.setup import Setup
 
 _FLANGES = ("tool0", "flange", "ee_link", "wrist_3_link", "tool_flange")
@@ -50,15 +46,7 @@ _FAMILIES = ("ur", "eaik", "offset-wrist")  # the second says most about an arm 
 _NEEDED = ("pinocchio", "fcl", "igl", "trimesh", "scipy")
 _JOINTS, _ACCELERATION = 6, 5.0  # rad/s^2, which most arms of a meter can
 _JERK = 1000.0  # rad/s^3, an example
-_MOST_ASKED = 300  # vertices of the part, wherever it is tried
 _EDGES_M, _VERTICES = (0.01, 0.1), 2500  # the longest edges: as long as gives so many vertices
-_FARTHER, _HIGHER = (0.45, 0.6, 0.75), (0.02, 0.2, 0.4)
-"""Places that are tried: of the part's middle before the robot, and of its lowest point above the
-ground, as shares of the arm's reach."""
-_UP, _BELOW = 0.6, (0.8, 0.6, 0.4)
-"""An arm whose first joint is higher than the first share hangs, or stands on something. Then the
-part's highest point lies so far below that joint."""
-_WORST = 0.1  # of the points count for how well they are reached
 
 _FILE = FileKind("a file begun by cellcolor new", re.compile(re.escape(MARK).encode()))
 _TOOL_FILE = FileKind("a tool begun by cellcolor new", re.compile(rb"<!-- begun by cellcolor new"))
@@ -122,6 +110,8 @@ def new(
     """
     deadline, tell = Deadline.of(time_limit), progress or (lambda _: None)
     require_motion("finding a home position", _NEEDED)
+    from cellcolor.frontend.scene import Scene
+
     mesh, urdf, place = path_of(part), path_of(arm), path_of(folder)
     names = ["setup.toml", "scene.toml", *(["tool.urdf"] if tool is None else [])]
     kinds = {name: _TOOL_FILE if name.endswith(".urdf") else _FILE for name in names}
@@ -136,7 +126,11 @@ def new(
     looked = inspect(mesh, unit=unit, time_limit=deadline)
     part_keys, side = part_keys_of(mesh, place, looked, outside, cover)
     tell("where the part can stand")
-    best, share = best_place(robot, mesh, part_keys, deadline)
+    table = tomllib.loads(Template(SCENE).substitute(part_keys, position="[0.0, 0.0, 0.0]"))
+    table["object"]["file"] = str(mesh.resolve())
+    with naming(mesh):
+        tried = Scene(**table | {"setup": robot.setup})
+        best, share = best_place(tried, robot.reach, robot.base_m, deadline)
     home, posture = home_of(best)
     edge = float(part_keys["max_edge"])
     robot.keys.update(_found(best, home), spacing=f"{edge / 10:g}")
@@ -219,9 +213,10 @@ def arm_of(
     chain, moving = arm.chain(flange), arm.leading.keys() - still
     moved = next((at for at, link in enumerate(chain) if arm.joint_above.get(link) in moving), 0)
     standing = [link for link in chain[: moved + 1] if link in arm.shapes]
-    weightless = bool(weight_faults(arm, still)) or (
-        tool is not None and is_weightless(load_urdf(tool))
-    )
+    weightless = bool(weight_faults(arm, still))
+    if tool is not None:
+        own = load_urdf(tool)
+        weightless |= any(own.links[name].find("inertial") is None for name in own.shapes)
     keys = {
         "arm": urdf.name,
         "arm_urdf": json.dumps(_relative(urdf, folder)),
@@ -258,9 +253,9 @@ def arm_of(
         keys = found.keys | {"touching": touching}
         return FoundArm(urdf, tool, keys, reach, pairs, fixed, (x, y, z))
     fault = faults[1] if faults[1].file else faults[1].in_file(str(urdf))
-    own = [name for name in fix if name in {arm.joint_above.get(link) for link in chain}]
-    if own and "6 revolute joints" in fault.message:
-        why = f"{fault.message}: --fix {own[0]} makes a joint of the arm itself stand still"
+    inside = [name for name in fix if name in {arm.joint_above.get(link) for link in chain}]
+    if inside and "6 revolute joints" in fault.message:
+        why = f"{fault.message}: --fix {inside[0]} makes a joint of the arm itself stand still"
         raise InputError(fault.file, fault.field, why)
     if "fixed_joints" in fault.message + (fault.field or ""):
         raise InputError(fault.file, fault.field, f"{fault.message} (here: --fix JOINT=POSITION)")
@@ -289,7 +284,7 @@ def part_keys_of(
         raise InputError(str(mesh), None, looked.refusal_after_repair)
     unit = UNITS[looked.unit]
     surface = load_mesh(mesh, unit, mend=bool(looked.repairs))
-    side = side_of(surface, outside, cover)
+    side, note = side_of(surface.mesh, outside, cover)
     # Halved edges are 0.7 of the longest in the mean, and there are two triangles a vertex.
     edge = math.ceil(1e3 * math.sqrt(surface.mesh.areas.sum() / (0.42 * _VERTICES))) / 1e3
     least, most = _EDGES_M
@@ -300,113 +295,7 @@ def part_keys_of(
         "repair": "true" if looked.repairs else "false",
         "max_edge": str(min(max(least, edge), most)),
     }
-    return keys | side.keys, side.note
-
-
-def best_place(
-    arm: FoundArm, mesh: Path, part_keys: dict[str, str], deadline: Deadline
-) -> tuple[PreparedScene, float]:
-    """The scene with the part where the arm reaches it best, and the share of it that is reached.
-
-    Of nine places before the robot that is the one where most of the part can be reached, then most
-    of it in one posture, then where this posture is farthest from limits and singularities at the
-    worst tenth of the points.
-
-    Raises:
-        InputError: nothing of it can be reached anywhere.
-    """
-    from cellcolor.frontend.prepared import prepare
-    from cellcolor.frontend.scene import Scene
-
-    table = tomllib.loads(Template(SCENE).substitute(part_keys, position="[0.0, 0.0, 0.0]"))
-    table["object"]["file"] = str(mesh.resolve())
-    scene = Scene(**table | {"setup": arm.setup})
-    with naming(mesh):
-        vertices = scene.placement.placed(scene.object.surface(scene.folder, deadline).vertices)
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    middle = (low + high) / 2
-    tried: list[_Reached] = []
-    prepared: PreparedScene | None = None
-    fault: InputError | None = None
-    failed: Counter[str] = Counter()
-    x, y, z = arm.base_m
-    heights = [share * arm.reach - low[2] for share in _HIGHER]
-    if z > _UP * arm.reach:
-        heights = [max(z - share * arm.reach - high[2], -low[2]) for share in _BELOW]
-    for far, height in product(_FARTHER, heights):
-        position = x + far * arm.reach - middle[0], y - middle[1], height
-        try:
-            place = scene.placement.varied(position_m=(np.round(position, 3) + 0.0).tolist())
-            if prepared is None:
-                prepared = prepare(scene.varied(placement=place), deadline)
-            else:
-                prepared = prepared.at(place)
-        except InputError as error:  # such as a part that would stand in the robot
-            fault = error
-            continue
-        surface = prepared.surface
-        step = -(-len(surface.vertices) // _MOST_ASKED)
-        solved = prepared.arm.inverse(surface.vertices[::step], -surface.normals[::step], deadline)
-        verdicts = prepared.judge(solved.reshape(-1, prepared.robot.joints), deadline)
-        failed.update(prepared.judge.reason_names[code] for code in verdicts.reasons.tolist())
-        tried.append(_Reached.of(prepared, verdicts, solved.shape[:2]))
-    if not tried:
-        assert fault is not None
-        raise fault
-    greatest = max(float(one.determinants.max(initial=0.0)) for one in tried)
-    best = max(tried, key=lambda one: one.merit(greatest))  # the first of several
-    if not best.valid.any():
-        message = (
-            "nothing of the part can be reached at any of nine places before the robot; most often "
-            f"a posture fails by {failed.most_common(1)[0][0]!r}: does the part's outside face the "
-            "robot (--outside flip), and is its size one for this arm?"
-        )
-        raise InputError(str(mesh), None, "; ".join([message, *best.prepared.robot.warnings]))
-    return best.prepared, float(best.valid.any(axis=1).mean())
-
-
-@dataclass(frozen=True, eq=False)
-class _Reached:
-    """How well the arm reaches a sample of the part's vertices in one place, in each posture.
-
-    Attributes:
-        prepared: the scene with the part there.
-        valid: (n, branches) whether the arm may be on that vertex.
-        determinants: (n, branches) of the task, m³; 0 where it may not.
-        room: (n, branches) to the joint limits, 0 to 1.
-    """
-
-    prepared: PreparedScene
-    valid: Mask
-    determinants: Array
-    room: Array
-
-    @classmethod
-    def of(cls, prepared: PreparedScene, verdicts: Verdicts, shape: tuple[int, int]) -> _Reached:
-        """From the verdicts on the candidates of all vertices."""
-        from cellcolor.data.candidate_table import VALID
-        from cellcolor.motion.posture import joint_room
-
-        valid = verdicts.reasons == VALID
-        room = joint_room(prepared.robot, np.where(valid[:, None], verdicts.configurations, 0.0))
-        determinants = np.where(valid, verdicts.determinants, 0.0)
-        own = (valid.reshape(shape), determinants.reshape(shape), room.reshape(shape))
-        return cls(prepared, *own)
-
-    def merit(self, greatest: float) -> tuple[float, float, float]:
-        """What a better place has more of: reach, reach in one posture, and distance to limits.
-
-        Args:
-            greatest: determinant of all places, m³.
-        """
-        valid = self.valid
-        good = np.where(valid, np.minimum(self.determinants / (greatest or 1.0), self.room), 0.0)
-        if not self.prepared.arm.named:  # columns are no postures
-            valid, good = np.array([valid.any(axis=1)]).T, np.array([good.max(axis=1)]).T
-        shares, worst = valid.mean(axis=0).round(2), np.quantile(good, _WORST, axis=0)
-        branch = max(range(len(shares)), key=lambda own: (shares[own], worst[own]))
-        share = float(valid.any(axis=1).mean().round(2))
-        return share, float(shares[branch]), float(worst[branch])
+    return keys | side, note
 
 
 def _found(prepared: PreparedScene, home: list[float] | None) -> dict[str, str]:

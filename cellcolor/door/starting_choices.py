@@ -1,22 +1,26 @@
-"""What ``cellcolor.new`` chooses: the flange, joints that stand still, the side, the home."""
+"""What ``cellcolor.new`` chooses: the flange, joints that stand still, the side, place and home."""
 
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from cellcolor.data.candidate_table import VALID
+from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
 
 if TYPE_CHECKING:
     from cellcolor.arrays import Array, Index, Mask
     from cellcolor.frontend.arm.urdf import Urdf
-    from cellcolor.frontend.parts.surface import Surface
     from cellcolor.frontend.prepared import PreparedScene
+    from cellcolor.frontend.reach.validity import Verdicts
+    from cellcolor.frontend.scene import Scene
     from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 Outside = Literal["toward", "away", "flip"]
@@ -29,7 +33,14 @@ _UPRIGHT, _AWRY = 0.5, 0.35  # how far the mean of normals leans; rad: less is n
 _ANY_WAY = 0.2  # the mean of the unit normals of what faces every way is shorter
 _LARGER = 1.02  # times the inner side's area has a shell's outer one, if it is bent
 _ABOVE = (0.1, 0.15, 0.05, 0.2)  # m; so far over the part the arm waits, the first that is free
-_MOST = 300  # vertices that are asked for the posture
+_MOST_ASKED = 300  # vertices of the part, wherever it is tried
+_FARTHER, _HIGHER = (0.45, 0.6, 0.75), (0.02, 0.2, 0.4)
+"""Places that are tried: of the part's middle before the robot, and of its lowest point above the
+ground, as shares of the arm's reach."""
+_UP, _BELOW = 0.6, (0.8, 0.6, 0.4)
+"""An arm whose first joint is higher than the first share hangs, or stands on something. Then the
+part's highest point lies so far below that joint."""
+_WORST = 0.1  # of the points count for how well they are reached
 _NEARLY = 0.9  # of what the best posture covers
 
 
@@ -45,11 +56,6 @@ def last_link(parent: dict[str, str]) -> str:
         return count
 
     return max(parent, key=depth)
-
-
-def is_weightless(tool: Urdf) -> bool:
-    """Whether a link with a shape has no mass."""
-    return any(tool.links[name].find("inertial") is None for name in tool.shapes)
 
 
 def mount_line(arm: Urdf, flange: str, still: Mapping[str, float]) -> str:
@@ -104,23 +110,10 @@ def fixed_line(fixed: Mapping[str, float]) -> str:
     return f"fixed_joints = {{ {joints} }}   # joints that stand still, rad or m\n"
 
 
-@dataclass(frozen=True)
-class Side:
-    """Which side of the part is covered.
-
-    Attributes:
-        keys: what is filled into the scene's text.
-        note: what to say.
-    """
-
-    keys: dict[str, str]
-    note: str
-
-
 def _chosen(
     keys: dict[str, str], note: str, mean: Array | None = None, outside: Outside | None = None
-) -> Side:
-    """The side, and how far it is turned about the vertical so that it faces the robot.
+) -> tuple[dict[str, str], str]:
+    """Keys and note of a side, and how far it is turned about the vertical to face the robot.
 
     Args:
         mean: of its normals (3,), if it has to face the robot; not if it is to face ``away``.
@@ -132,24 +125,28 @@ def _chosen(
             note += f"; turned by {np.degrees(yaw):.0f} degrees, it faces the robot"
         else:
             yaw = 0.0
-    return Side(keys | {"rpy": json.dumps([0.0, 0.0, yaw])}, note)
+    return keys | {"rpy": json.dumps([0.0, 0.0, yaw])}, note
 
 
-def side_of(surface: Surface, outside: Outside | None, cover: CoverChoice | None) -> Side:
+def side_of(
+    mesh: TriangleMesh, outside: Outside | None, cover: CoverChoice | None
+) -> tuple[dict[str, str], str]:
     """The side that is asked for, or the likely one.
 
     Of a shell that is the outer one, or the one that faces up; of any other part all of it, as its
     faces are wound.
 
     Args:
-        surface: the part as its file has it, m.
+        mesh: the part as its file has it, m.
+
+    Returns:
+        What is filled into the scene's text, and what to say.
 
     Raises:
         InputError: the part has no such side.
     """
-    from cellcolor.frontend.parts.sides import facing, pieces, shell_sides, thickness
+    from cellcolor.frontend.parts.cover import facing, pieces, shell_sides, thickness
 
-    mesh = surface.mesh
     thick = thickness(mesh)
     sides = None if thick is None else shell_sides(mesh)
     if thick is not None and sides is not None and cover != "all":
@@ -164,8 +161,8 @@ def side_of(surface: Surface, outside: Outside | None, cover: CoverChoice | None
     flip = _flipped(mesh, outside)
     mean = facing(mesh) * (-1 if flip else 1)
     note = "all of the part is covered"
-    keys = {"flip": "flip = true                         # the other side is the outside\n"}
-    keys = {"flip": keys["flip"] if flip else "", "cover": ""}
+    turned = "flip = true                         # the other side is the outside\n"
+    keys = {"flip": turned if flip else "", "cover": ""}
     if cover == "largest":
         largest = pieces(mesh)[0]
         if not largest.all():
@@ -185,7 +182,7 @@ def _side(mesh: TriangleMesh, sides: list[Mask], outside: Outside | None) -> tup
 
     Without a wish that is the outer one; of a flat shell the one that faces up and to the robot.
     """
-    from cellcolor.frontend.parts.sides import facing
+    from cellcolor.frontend.parts.cover import facing
 
     first, second = (facing(mesh, side) for side in sides)
     areas = [float(mesh.areas[side].sum()) for side in sides]
@@ -204,7 +201,7 @@ def _flipped(mesh: TriangleMesh, outside: Outside | None) -> bool:
     Raises:
         InputError: it is closed, or faces every way.
     """
-    from cellcolor.frontend.parts.sides import facing
+    from cellcolor.frontend.parts.cover import facing
 
     if outside is None:
         return False
@@ -221,7 +218,7 @@ def _flipped(mesh: TriangleMesh, outside: Outside | None) -> bool:
 
 def _cover(mesh: TriangleMesh, faces: Mask) -> str:
     """The scene's table for one side."""
-    from cellcolor.frontend.parts.sides import SHARP_RAD, inner_point
+    from cellcolor.frontend.parts.cover import SHARP_RAD, inner_point
 
     seed = [round(x, 6) + 0.0 for x in inner_point(mesh, faces).tolist()]
     return (
@@ -249,7 +246,7 @@ def _home_over(prepared: PreparedScene) -> tuple[list[float], str] | None:
     from cellcolor.motion.limits import motion_of
 
     surface, arm = prepared.surface, prepared.arm
-    step = -(-len(surface.vertices) // _MOST)
+    step = -(-len(surface.vertices) // _MOST_ASKED)
     solved = arm.inverse(surface.vertices[::step], -surface.normals[::step])
     verdicts = prepared.judge(solved.reshape(-1, solved.shape[2]))
     covers = (verdicts.reasons == VALID).reshape(solved.shape[:2]).mean(axis=0)
@@ -294,3 +291,108 @@ def home_of(prepared: PreparedScene) -> tuple[list[float] | None, str]:
     if home is None:
         return None, "no free home position was found: the motion may begin and end anywhere"
     return home, "the arm begins and ends near the middle of its limits: none over the part is free"
+
+
+def best_place(
+    scene: Scene, reach: float, base_m: tuple[float, float, float], deadline: Deadline
+) -> tuple[PreparedScene, float]:
+    """The scene with the part where the arm reaches it best, and the share of it that is reached.
+
+    Of nine places before the robot that is the one where most of the part can be reached, then most
+    of it in one posture, then where this posture is farthest from limits and singularities at the
+    worst tenth of the points.
+
+    Args:
+        scene: with the part's file in the origin.
+        reach: of the arm, m.
+        base_m: its first joint in the world.
+
+    Raises:
+        InputError: nothing of it can be reached anywhere.
+    """
+    from cellcolor.frontend.prepared import prepare
+
+    vertices = scene.placement.placed(scene.object.surface(scene.folder, deadline).vertices)
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    middle = (low + high) / 2
+    tried: list[_Reached] = []
+    prepared: PreparedScene | None = None
+    fault: InputError | None = None
+    failed: Counter[str] = Counter()
+    x, y, z = base_m
+    heights = [share * reach - low[2] for share in _HIGHER]
+    if z > _UP * reach:
+        heights = [max(z - share * reach - high[2], -low[2]) for share in _BELOW]
+    for far, height in product(_FARTHER, heights):
+        position = x + far * reach - middle[0], y - middle[1], height
+        try:
+            place = scene.placement.varied(position_m=(np.round(position, 3) + 0.0).tolist())
+            if prepared is None:
+                prepared = prepare(scene.varied(placement=place), deadline)
+            else:
+                prepared = prepared.at(place)
+        except InputError as error:  # such as a part that would stand in the robot
+            fault = error
+            continue
+        surface = prepared.surface
+        step = -(-len(surface.vertices) // _MOST_ASKED)
+        solved = prepared.arm.inverse(surface.vertices[::step], -surface.normals[::step], deadline)
+        verdicts = prepared.judge(solved.reshape(-1, prepared.robot.joints), deadline)
+        failed.update(prepared.judge.reason_names[code] for code in verdicts.reasons.tolist())
+        tried.append(_Reached.of(prepared, verdicts, solved.shape[:2]))
+    if not tried:
+        assert fault is not None
+        raise fault
+    greatest = max(float(one.determinants.max(initial=0.0)) for one in tried)
+    best = max(tried, key=lambda one: one.merit(greatest))  # the first of several
+    if not best.valid.any():
+        message = (
+            "nothing of the part can be reached at any of nine places before the robot; most often "
+            f"a posture fails by {failed.most_common(1)[0][0]!r}: does the part's outside face the "
+            "robot (--outside flip), and is its size one for this arm?"
+        )
+        raise InputError(None, None, "; ".join([message, *best.prepared.robot.warnings]))
+    return best.prepared, float(best.valid.any(axis=1).mean())
+
+
+@dataclass(frozen=True, eq=False)
+class _Reached:
+    """How well the arm reaches a sample of the part's vertices in one place, in each posture.
+
+    Attributes:
+        prepared: the scene with the part there.
+        valid: (n, branches) whether the arm may be on that vertex.
+        determinants: (n, branches) of the task, m³; 0 where it may not.
+        room: (n, branches) to the joint limits, 0 to 1.
+    """
+
+    prepared: PreparedScene
+    valid: Mask
+    determinants: Array
+    room: Array
+
+    @classmethod
+    def of(cls, prepared: PreparedScene, verdicts: Verdicts, shape: tuple[int, int]) -> _Reached:
+        """From the verdicts on the candidates of all vertices."""
+        from cellcolor.motion.posture import joint_room
+
+        valid = verdicts.reasons == VALID
+        room = joint_room(prepared.robot, np.where(valid[:, None], verdicts.configurations, 0.0))
+        determinants = np.where(valid, verdicts.determinants, 0.0)
+        own = (valid.reshape(shape), determinants.reshape(shape), room.reshape(shape))
+        return cls(prepared, *own)
+
+    def merit(self, greatest: float) -> tuple[float, float, float]:
+        """What a better place has more of: reach, reach in one posture, and distance to limits.
+
+        Args:
+            greatest: determinant of all places, m³.
+        """
+        valid = self.valid
+        good = np.where(valid, np.minimum(self.determinants / (greatest or 1.0), self.room), 0.0)
+        if not self.prepared.arm.named:  # columns are no postures
+            valid, good = np.array([valid.any(axis=1)]).T, np.array([good.max(axis=1)]).T
+        shares, worst = valid.mean(axis=0).round(2), np.quantile(good, _WORST, axis=0)
+        branch = max(range(len(shares)), key=lambda own: (shares[own], worst[own]))
+        share = float(valid.any(axis=1).mean().round(2))
+        return share, float(shares[branch]), float(worst[branch])

@@ -10,17 +10,21 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, Union
 
+from cellcolor.arrays import Mask
 from cellcolor.data.candidate_table import CandidateTable
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.data.value import read_one_of
+from cellcolor.data.value import Drawn, read_one_of
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of, locate
 from cellcolor.decomposition.same_graph import wrong_cell
-from cellcolor.door.extras import extras_for
-from cellcolor.door.shipped import find_file
+from cellcolor.door.installed import extras_for, find_file
 from cellcolor.errors import InputError, naming
+from cellcolor.files.paths import path_of
+from cellcolor.files.writing import Output, write
+from cellcolor.questions.places import Place, chosen
 
 if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult, Scene
@@ -162,6 +166,23 @@ class Subject:
             f"lies in {reference.path!r} beside the instance's file, and a value read from there "
             "does not know where that is: give the file, or the surface"
         )
+
+    def left_alone(self, place: Place | None) -> Subject:
+        """Without colors in a place; None leaves it as it is.
+
+        Raises:
+            InputError: the place is of another mesh, or there is no surface.
+        """
+        if place is None:
+            return self
+        return self.without_vertices(chosen(self.surface, place, "left_alone"))
+
+    def without_vertices(self, mask: Mask) -> Subject:
+        """Without colors at some vertices (n,) of the surface."""
+        if self.built is not None:
+            built = self.built.without(mask)
+            return Subject(self.path, built, built.surface)
+        return Subject(None, given_surface=self.surface.without_vertices(mask))
 
     def check_graph(self, deadline: Deadline = NEVER) -> str | None:
         """Compare an instance that names its surface with that surface, if it is available.
@@ -310,3 +331,62 @@ def read_graph(path: Path) -> Instance | LabelledSurface:
         raise InputError(str(path), None, message)
     found: Instance | LabelledSurface = read_one_of(path, (Instance, LabelledSurface))
     return found
+
+
+@dataclass(frozen=True, repr=False)
+class Result(Drawn):
+    """The fewest segments that were found, and what is proved about them.
+
+    Attributes:
+        solution: the solver's answer, which the checker has passed.
+        subject: what was solved, opened.
+        covered_share: what was solved, as a share of the area that can be covered and is not left
+            alone, 0 to 1.
+    """
+
+    solution: Solution
+    subject: Subject = field(hash=False)
+    covered_share: float = 1.0
+
+    @property
+    def instance(self) -> Instance:
+        """The topological graph that was solved."""
+        return self.subject.graph()
+
+    @property
+    def surface(self) -> LabelledSurface | None:
+        """The labelled surface; None for an instance without one.
+
+        Raises:
+            InputError: the file that the instance names cannot be read, or is another surface.
+        """
+        return self.subject.surface if self.subject.names_surface else None
+
+    @property
+    def segments(self) -> int | None:
+        """How many there are; None when no division was found."""
+        return self.solution.segments
+
+    @property
+    def lift_offs(self) -> int | None:
+        """``max(0, segments - 1)``; None when no division was found."""
+        return self.solution.lift_offs
+
+    @property
+    def optimal(self) -> bool:
+        """Proved to be the fewest in the search space."""
+        return self.solution.status == "optimal"
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the solution to a file; only an older solution is overwritten.
+
+        Raises:
+            InputError: there is something else, or it cannot be written.
+        """
+        write([Output.of(path_of(path), self.solution)])
+
+    def __str__(self) -> str:
+        return self.solution.in_words(self.instance)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} of {self.instance.name!r}: {self}>"

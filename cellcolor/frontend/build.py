@@ -20,6 +20,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.links import continuous_along, valid_along
+from cellcolor.frontend.parts.surface import MOST_VERTICES
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import Coloring, color_nodes
 from cellcolor.frontend.reach.limit_colors import LimitColors, limit_colors
@@ -27,7 +28,6 @@ from cellcolor.frontend.reach.slivers import SliverReport, clean
 from cellcolor.frontend.reach.validity import Verdicts
 from cellcolor.frontend.report import BuildReport, report_on
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.sizes import check_turns
 from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.version import __version__
 
@@ -254,7 +254,10 @@ def judged_at_vertices(prepared: PreparedScene, clock: StageClock) -> Verdicts:
     turn, surface = prepared.setup.task.turn, prepared.surface
     if turn is not None:
         with naming(prepared.setup.file):
-            check_turns(len(surface.vertices), len(turn.degrees))
+            count, turns = len(surface.vertices), len(turn.degrees)
+            if count * turns > MOST_VERTICES:
+                message = f"{turns} turns on {count:,} vertices are more than {MOST_VERTICES:,}"
+                raise InputError(None, "task.turn", f"{message} together")
     with clock.timed("inverse kinematics"):
         solutions = prepared.arm.inverse(surface.vertices, -surface.normals, clock.deadline)
     with clock.timed("validity at the vertices"):

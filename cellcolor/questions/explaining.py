@@ -20,9 +20,15 @@ from cellcolor.deadline import OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import BuildResult, build_prepared
-from cellcolor.frontend.judging_again import built_asking_less, built_asking_more
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.relaxing import TOOL_LENGTH, Relaxation, relaxations_of, without
+from cellcolor.frontend.relaxing import (
+    TOOL_LENGTH,
+    Relaxation,
+    built_asking_less,
+    built_asking_more,
+    relaxations_of,
+    without,
+)
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.questions.explanation import Explanation, RelaxedMinimum
 from cellcolor.solvers import checked

@@ -22,8 +22,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.build import build_prepared
 from cellcolor.frontend.contact.engine import meet
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
-from cellcolor.frontend.parts.remeshing import length_for, remeshed
-from cellcolor.frontend.parts.unfolding import fold_angle, folds
+from cellcolor.frontend.parts.remeshing import fold_angle, folds, length_for, remeshed
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.stage_clock import StageClock

@@ -11,9 +11,8 @@ import fcl
 import numpy as np
 
 from cellcolor.arrays import Array, Mask
-from cellcolor.frontend.arm.body import Body
+from cellcolor.frontend.arm.body import Body, Shape
 from cellcolor.frontend.arm.kinematics import Poses
-from cellcolor.frontend.arm.shape import Shape
 from cellcolor.frontend.reach.validity_tests import Workplace
 
 Pair = tuple[Body, Body | Shape, float]

@@ -77,7 +77,7 @@ def test_a_graph_that_is_in_the_library_is_recognised(
     from dataclasses import replace
 
     from cellcolor.data.library_index import LibraryIndex
-    from cellcolor.door.shipped import Library
+    from cellcolor.door.installed import Library
 
     index = LibraryIndex((replace(entry, fingerprint=graph.sha256),))
     monkeypatch.setattr(Library, "index", index)

@@ -31,7 +31,7 @@ from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.deadline import OutOfTime
-from cellcolor.door.plan_files import KINDS
+from cellcolor.door.planned import KINDS
 from cellcolor.errors import InputError
 from cellcolor.exports.registry import EXPORTS
 from cellcolor.frontend.scene import Scene

@@ -16,7 +16,7 @@ import pytest
 from shipped import TOP
 
 import cellcolor
-from cellcolor.door.extras import DISTRIBUTIONS
+from cellcolor.door.installed import DISTRIBUTIONS
 
 FUNCTIONS = ["build", "check", "plan", "read", "setups", "show", "solve", "tradeoff"]
 FRONTEND = {"pinocchio", "trimesh", "fcl", "coal", "igl", "scipy", "cellcolor.frontend"}

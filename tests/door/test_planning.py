@@ -13,8 +13,7 @@ import cellcolor
 import cellcolor.frontend.prepared
 from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline
-from cellcolor.door.plan_files import KINDS
-from cellcolor.door.planned import PlannedScene
+from cellcolor.door.planned import KINDS, PlannedScene
 from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.ways import Transfer, Ways

@@ -16,7 +16,7 @@ from shipped import ROBOTS, SCENES, TOP
 
 import cellcolor
 from cellcolor.cli import main
-from cellcolor.door.shipped import find_file, library
+from cellcolor.door.installed import find_file, library
 from cellcolor.errors import InputError
 
 

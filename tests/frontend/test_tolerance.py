@@ -134,7 +134,7 @@ def test_the_option_has_units(capsys: pytest.CaptureFixture[str]) -> None:
     assert run("solve", "wok.json", "--tolerance=2mm") == 2
     assert "is no scene" in capsys.readouterr().err
     from cellcolor.cli.inputs import with_tolerance
-    from cellcolor.door.shipped import find_file
+    from cellcolor.door.installed import find_file
 
     both = with_tolerance(find_file("wok"), "2mm,0.5deg").tolerance
     same = with_tolerance(find_file("wok"), "0.00872664625997rad, 0.002m").tolerance

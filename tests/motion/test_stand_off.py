@@ -5,7 +5,7 @@ import pytest
 from turned_scenes import plate, setup
 
 import cellcolor
-from cellcolor.door.shipped import find_file
+from cellcolor.door.installed import find_file
 from cellcolor.frontend import Scene, build_surface
 from cellcolor.trajectory_checker.check import check_trajectory
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from cellcolor import InputError
-from cellcolor.door.placing import save_map
+from cellcolor.door.asking import save_map
 from cellcolor.questions.placements import PlacedMinimum, Placements
 
 HERE = PlacedMinimum((0.5, 0, 0, 0, 0, 0), 3, 0.9, True, 200)

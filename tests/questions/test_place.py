@@ -377,7 +377,7 @@ def test_the_command_takes_a_tolerance(monkeypatch: pytest.MonkeyPatch) -> None:
         assert scene.tolerance is not None and scene.tolerance.position_m == 0.002
         raise cellcolor.OutOfTime
 
-    monkeypatch.setattr("cellcolor.door.placing.place", asked)
+    monkeypatch.setattr("cellcolor.door.asking.place", asked)
     assert run("place", "wok", "--x", "0.4,0.5", "--tolerance", "2mm") == 3
     assert run("place", "wok", "--x", "0.4,0.5", "--tolerance", "2") == 2
 

@@ -18,7 +18,7 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.tool_paths import ToolPath, ToolPaths
 from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
-from cellcolor.door.result import Result
+from cellcolor.door.subject import Result
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.painting.paint import Painted

@@ -90,7 +90,7 @@ def test_the_library_is_opened_by_name(base: Environment) -> None:
     found = json.loads(
         base.python(
             "import cellcolor, json\n"
-            "from cellcolor.door.shipped import find_file\n"
+            "from cellcolor.door.installed import find_file\n"
             "from cellcolor.errors import InputError\n"
             f"read = [cellcolor.read(name) for name in {names}]\n"
             "refused = []\n"

@@ -22,10 +22,8 @@ from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming, system_errors
 from cellcolor.frontend.parts.mesh import check_corners, mesh_surface
-from cellcolor.frontend.parts.part import Part
 from cellcolor.frontend.parts.polygons import triangulated
-from cellcolor.frontend.parts.surface import Faces, Surface
-from cellcolor.frontend.sizes import check_faces
+from cellcolor.frontend.parts.surface import Faces, Part, Surface, check_faces
 from cellcolor.frontend.tables import Positive
 
 _MOST_BYTES = 200_000_000  # some millions of triangles; reading takes ten times as much memory

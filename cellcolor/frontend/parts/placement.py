@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field, FiniteFloat, model_validator
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.shape import Shape
+from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.tables import Angles, Position, Table
 
 

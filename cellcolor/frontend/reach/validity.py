@@ -12,7 +12,7 @@ from cellcolor.arrays import Array, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.movement import tracked_points, tracked_steps
+from cellcolor.frontend.contact.tip import tracked_points, tracked_steps
 from cellcolor.frontend.reach.validity_tests import (
     STANDARD_TESTS,
     Postures,
@@ -37,7 +37,7 @@ class Verdicts:
         reasons: (...) uint8 codes, which index ``reason_names``.
         determinants: (...) task determinant in m^3, NaN without solution.
         tracked: (points, ..., 3) of the bodies that can move, in the world, m, see
-            :func:`~cellcolor.frontend.contact.movement.tracked_points`; NaN as above.
+            :func:`~cellcolor.frontend.contact.tip.tracked_points`; NaN as above.
         reason_names: valid, no solution, and the tests in the order of testing.
     """
 

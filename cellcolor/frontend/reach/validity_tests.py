@@ -16,6 +16,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from cellcolor.arrays import Array, Mask
+from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.arm.kinematics import (
     Poses,
     forward,
@@ -25,10 +26,8 @@ from cellcolor.frontend.arm.kinematics import (
     tip_jacobian,
 )
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.shape import Shape
 from cellcolor.frontend.contact.engine import Contacts, Pair, pairs_of, pairs_with
-from cellcolor.frontend.contact.movement import HalfSpace, body_ends
-from cellcolor.frontend.contact.tip import Tip
+from cellcolor.frontend.contact.tip import HalfSpace, Tip, body_ends
 from cellcolor.frontend.reach.prepared_arm import PreparedArm
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.tables import Registry, Table
@@ -41,7 +40,7 @@ class Workplace:
     Attributes:
         arm: and what it has to do.
         ground: None without one.
-        obstacles: see :class:`~cellcolor.frontend.arm.shape.Shape`.
+        obstacles: see :class:`~cellcolor.frontend.arm.body.Shape`.
         target: the object, as what must not be hit.
         tip: the region where the tool works.
     """

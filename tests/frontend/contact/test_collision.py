@@ -13,14 +13,14 @@ from world import PAIRS, World
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend import build_surface
+from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.shape import Shape
 from cellcolor.frontend.contact.engine import Contacts, pairs_of, pairs_with
-from cellcolor.frontend.contact.movement import HalfSpace
 from cellcolor.frontend.contact.obstacle import (
     CylinderObstacle,
 )
+from cellcolor.frontend.contact.tip import HalfSpace
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
 from cellcolor.frontend.parts.surface import Surface

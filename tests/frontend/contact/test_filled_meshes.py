@@ -12,10 +12,9 @@ from hypothesis import strategies as st
 from meshed_arm import is_inside, link_meshes
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.body import mesh_body
+from cellcolor.frontend.arm.body import Shape, convex_hull, mesh_body
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.shape import Shape, convex_hull
 from cellcolor.frontend.contact.engine import Contacts, Pair
 from cellcolor.trajectory_checker.contacts import touching
 from examples import examples

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial.distance import pdist
 
 from cellcolor.frontend.parts.mending import crossing_pairs
-from cellcolor.frontend.parts.unfolding import fold_angle, folds, unfolded
+from cellcolor.frontend.parts.remeshing import fold_angle, folds, unfolded
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from examples import examples
 

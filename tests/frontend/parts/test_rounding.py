@@ -13,7 +13,6 @@ from shipped import shipped
 
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
-from cellcolor.frontend import sizes
 from cellcolor.frontend.parts import rounding
 from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.rounding import note_on_triangles, rounded
@@ -139,7 +138,7 @@ def test_many_faces_around_a_vertex(monkeypatch: pytest.MonkeyPatch) -> None:
     assert rounded(part, 0.6).normals == pytest.approx(usual)
     with pytest.raises(OutOfTime):
         rounded(part, 0.6, Deadline.after(0.0))
-    monkeypatch.setattr(sizes, "_MOST_AROUND", 1000)
+    monkeypatch.setattr(rounding, "_MOST_AROUND", 1000)
     with pytest.raises(InputError, match="a smaller radius, or larger triangles") as caught:
         rounded(part, 0.6)
     assert caught.value.field == "task.edge_radius_m"

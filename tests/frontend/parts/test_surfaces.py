@@ -17,7 +17,6 @@ from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.parts.mesh_file import load_mesh
-from cellcolor.frontend.parts.part import Part
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import (
     PipeObject,
@@ -28,6 +27,7 @@ from cellcolor.frontend.parts.shapes import (
     rectangle,
     spherical_cap,
 )
+from cellcolor.frontend.parts.surface import Part
 from cellcolor.frontend.scene import Scene
 from examples import examples
 

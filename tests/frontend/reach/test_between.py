@@ -12,14 +12,14 @@ from shipped import SCENES, WOK
 
 from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, build_surface
-from cellcolor.frontend.contact.movement import longest_steps
 from cellcolor.frontend.contact.obstacle import CylinderObstacle
+from cellcolor.frontend.contact.tip import longest_steps
+from cellcolor.frontend.links import (
+    remains_valid,
+)
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.reach.between import (
-    remains_valid,
-)
 from cellcolor.frontend.scene import Scene
 
 

@@ -30,7 +30,7 @@ from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, named, prepare
 from cellcolor.frontend.reach.sheets import Followed, sheets_of
-from cellcolor.frontend.reach.tracking import Solutions, Tracker
+from cellcolor.frontend.reach.smooth import Solutions, Tracker
 from cellcolor.frontend.stage_clock import StageClock
 
 pytestmark = pytest.mark.second

@@ -11,16 +11,12 @@ from dart_graphs import graph_of
 from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
-from library import INSTANCES
 from rooms import hub
 
-import cellcolor
 from cellcolor.checker.division import check_division
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
-from cellcolor.decomposition import decompose
-from cellcolor.lab.families import planar_graph, voronoi
-from cellcolor.solvers.cpsat.dart_graph import dart_graph, widened
+from cellcolor.lab.families import planar_graph
 from cellcolor.solvers.cpsat.drawing import sector_colors
 from cellcolor.solvers.cpsat.local_search import Recoloring, recolor
 from cellcolor.solvers.cpsat.painting import (
@@ -30,7 +26,7 @@ from cellcolor.solvers.cpsat.painting import (
     division_of,
     segments_of,
 )
-from cellcolor.solvers.cpsat.sectors import SectorGraph, painting_of_sectors, sector_graph
+from cellcolor.solvers.cpsat.sectors import SectorGraph, sector_graph
 from examples import examples
 
 SEEDS = st.integers(0, 10**6)
@@ -115,11 +111,6 @@ def test_a_hub_is_cut_between_its_petals(petals: tuple[int, ...]) -> None:
     assert numbers(hub(*petals), 0)[-1] == minimum(hub(*petals))
 
 
-def test_a_surface_with_holes_and_cracks() -> None:
-    surface = voronoi(1, "annulus", 12, 20, 6, scattered=True, cracks=2, holes=2)
-    assert len(numbers(decompose(surface), 0)) > 1
-
-
 def test_a_seed_says_what_is_found() -> None:
     instance = planar_graph(3, 25, 50, 5)
     sectors = sector_graph(graph_of(instance), 1)
@@ -143,21 +134,3 @@ def test_no_time_leaves_what_there_was() -> None:
     instance = hub(0, 1, 0, 1)
     with pytest.raises(OutOfTime):
         next(recolor(graph_of(instance), whole(instance), Random(0), 0, Deadline.after(0), 30))
-
-
-def test_a_part_of_340_cells() -> None:
-    """By solving one window after another it had 18 segments in minutes (until 2026-11-24)."""
-    instance = cellcolor.read(INSTANCES / "hard" / "large_part_1.json")
-    assert isinstance(instance, Instance)
-    once = {edge.id: 1 for edge in instance.edges}
-    graph = dart_graph(instance, once, widened(instance, once, 2))
-    sectors = sector_graph(graph, 1)
-    painted = [min(graph.colors[cell]) for cell in sectors.cell]
-    search = Recoloring(sectors, painted, Random(0))
-    for _ in range(400):
-        search.move()
-    assert search.fewest < 18
-    division = canonical(graph, painting_of_sectors(sectors, search.best))
-    report = check_division(instance, division_of(graph, division), seams=graph.seams)
-    assert report.valid, report.problems
-    assert report.segments <= search.fewest

@@ -55,12 +55,6 @@ def test_surface_may_beat_paper(name: str, paper: int, surface: int) -> None:
     assert (found.status, found.segments, found.proved_for_surface) == ("optimal", surface, True)
 
 
-def test_three_loops_need_more_strands_than_two_at_a_time_would_get() -> None:
-    instance = Instance.read(PAPER / "three-loops.json")
-    found = solve(instance, Options())
-    assert (found.status, found.segments) == ("optimal", 4)
-
-
 def test_without_a_proof_for_the_surface_nothing_is_called_optimal() -> None:
     # With one strand the corridors' two segments are not found, and two could cross edge 2.
     instance = Instance.read(PAPER / "parallel-corridors.json")
@@ -104,15 +98,6 @@ def test_a_closed_surface_of_one_cell() -> None:
     assert {scheme_key(s) for s in schemes} == {
         (frozenset({(color, frozenset())}),) for color in (RED, BLUE)
     }
-
-
-def test_progress_reports_the_best_and_the_bound() -> None:
-    seen: list[tuple[int | None, int]] = []
-    instance = Instance.read(PAPER / "split-cell.json")
-    CpSatSolver().minimize(instance, Options(), lambda best, bound: seen.append((best, bound)))
-    # A division is there from the beginning: every cell painted whole.
-    assert all(found is not None and bound <= 2 <= found for found, bound in seen)
-    assert seen[-1] == (2, 2)
 
 
 def test_progress_comes_closer_and_never_passes_the_minimum() -> None:
