@@ -16,8 +16,8 @@ from meshes import drawn, surfaces
 import cellcolor
 from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.claimed_numbers import claims
-from cellcolor.checker.color_regions import regions_of_cells, regions_on_surface
 from cellcolor.checker.division import check_solution
+from cellcolor.checker.groups import regions_of_cells, regions_on_surface
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution

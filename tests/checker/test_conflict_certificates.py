@@ -19,8 +19,8 @@ from vertex_minima import vertex_minimum
 
 import cellcolor
 from cellcolor.checker.certificates import BoundVerdict, verify_bound
-from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.crossing_segments import TwoRegions
+from cellcolor.checker.groups import regions_of_cells
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
