@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from cellcolor.checker.whole_subcells import WholeSubCell, whole_subcells
+from cellcolor.checker.dart_lists import WholeSubCell, whole_subcells
 from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.solution import CellDivision
 from cellcolor.decomposition.borders import Curve, Step

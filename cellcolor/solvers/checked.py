@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from cellcolor.checker.certificates import verify_bound
-from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.dart_lists import MOST_DARTS
 from cellcolor.checker.division import Report, check_scheme, check_solution
+from cellcolor.checker.groups import regions_of_cells
 from cellcolor.data.bound_kinds import CertifiedCells, kind_of
 from cellcolor.data.bounds import Bound, greatest
 from cellcolor.data.instance import Instance

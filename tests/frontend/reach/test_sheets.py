@@ -188,12 +188,6 @@ def test_a_cuspidal_arm_is_refused_with_both_configurations(
     assert (values > 0).all() or (values < 0).all()
 
 
-def test_out_of_reach_of_all_there_are_no_colors() -> None:
-    far = plate(dh_arms.urdf("passing"), "eaik", vertices=60, position_m=(5.0, 0.0, 0.0))
-    result = build_surface(far)
-    assert result.surface.colors == () and result.report.reachable == 0
-
-
 class Disc:
     """A flat disc of seven vertices with two solutions each, linked as a test says."""
 
