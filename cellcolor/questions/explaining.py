@@ -24,7 +24,7 @@ from cellcolor.frontend.judging_again import built_asking_less, built_asking_mor
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.relaxing import TOOL_LENGTH, Relaxation, relaxations_of, without
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.questions.explanation import Explanation, RelaxedMinimum
+from cellcolor.questions.answers import Explanation, RelaxedMinimum
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 

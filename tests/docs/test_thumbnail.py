@@ -12,7 +12,7 @@ from library import INSTANCES, PAPER
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell
 from cellcolor.data.instance import Instance
 from cellcolor.lab.families import hub
-from cellcolor.pictures.palette import LINES
+from cellcolor.pictures.picture import LINES
 
 sys.path.append(str(INSTANCES.parent / "docs"))
 from thumbnail import thumbnail

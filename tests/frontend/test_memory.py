@@ -17,7 +17,7 @@ from cellcolor import memory
 from cellcolor.errors import TooLarge
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.trajectory_checker.repeated import _near
+from cellcolor.trajectory_checker.area import _near
 
 pytestmark = pytest.mark.second
 

@@ -25,7 +25,7 @@ from cellcolor.frontend.reach import validity
 from cellcolor.frontend.relaxing import TOOL_LENGTH, Relaxation, relaxations_of, without
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.questions import explaining
-from cellcolor.questions.explanation import Explanation, RelaxedMinimum
+from cellcolor.questions.answers import Explanation, RelaxedMinimum
 from examples import examples
 
 pytestmark = pytest.mark.second

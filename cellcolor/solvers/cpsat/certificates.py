@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from itertools import combinations, product
 
-from cellcolor.data.bound_kinds import CertifiedCrossing, CertifiedPart, CertifiedParts
+from cellcolor.data.bounds import CertifiedCrossing, CertifiedPart, CertifiedParts
 from cellcolor.solvers.cpsat.part import Part
 
 MOST_CONFLICTS = 2_000

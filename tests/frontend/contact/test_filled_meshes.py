@@ -17,7 +17,7 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.shape import Shape, convex_hull, one_of_each_part
 from cellcolor.frontend.contact.engine import Contacts, Pair
-from cellcolor.trajectory_checker.contacts import touching
+from cellcolor.trajectory_checker.validity import touching
 from examples import examples
 
 
