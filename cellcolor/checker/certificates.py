@@ -16,9 +16,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from cellcolor.checker.color_regions import ColorRegion
 from cellcolor.checker.crossing_segments import WORK, TwoRegions
-from cellcolor.checker.groups import Groups
+from cellcolor.checker.groups import ColorRegion, Groups
 from cellcolor.checker.plan_search import Conflict, PlanSearch
 from cellcolor.checker.proof import BudgetExceeded, Proof, Refused, few
 from cellcolor.data.bounds import (
@@ -100,7 +99,7 @@ def verify_bound(
 
     Args:
         regions: the color regions that each cell lies in, see
-            :mod:`cellcolor.checker.color_regions`.
+            :mod:`cellcolor.checker.groups`.
         budget: how many choices may be tried. The deadline ends them in the same way.
     """
     proof = Proof(instance, regions, budget, deadline)

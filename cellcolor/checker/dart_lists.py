@@ -9,10 +9,12 @@ other two reveal a mistake that only one of the three makes.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
-from cellcolor.data.cells_and_edges import Strand
+from cellcolor.checker.groups import Groups
+from cellcolor.data.cells_and_edges import Strand, strand_of, twin
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Seam
+from cellcolor.data.solution import CellDivision, Seam
 
 
 class NoLists(Exception):
@@ -82,3 +84,38 @@ def _connect(loops: list[list[int]], seam: Seam) -> None:
     place = near.index(seam.from_) + 1
     near[place:place] = detour
     loops.remove(far)
+
+
+class WholeSubCell(NamedTuple):
+    """A sub-cell as it is on the surface, where no seam parts anything."""
+
+    color: int
+    segment: int
+    strands: frozenset[Strand]
+    """Its darts in state 1, those of seams left out."""
+
+
+def whole_subcells(cell: CellDivision, seams: set[int]) -> list[WholeSubCell]:
+    """The sub-cells of a cell: those that only a seam, given by its id, parts are one."""
+    holder = {
+        strand_of(name): number for number, sub in enumerate(cell.subcells) for name in sub.darts
+    }
+    whole: Groups[int] = Groups()
+    for number in range(len(cell.subcells)):
+        whole.find(number)
+    for strand, number in holder.items():
+        if abs(strand[0]) in seams and twin(strand) in holder:
+            whole.join(number, holder[twin(strand)])
+    return [
+        WholeSubCell(
+            cell.subcells[min(parts)].color,
+            cell.subcells[min(parts)].segment,
+            frozenset(
+                strand
+                for part in parts
+                for strand in map(strand_of, cell.subcells[part].darts)
+                if abs(strand[0]) not in seams
+            ),
+        )
+        for parts in whole.sets()
+    ]

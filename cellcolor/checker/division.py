@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 
 from cellcolor.checker.certificates import BoundVerdict, verify_bound
 from cellcolor.checker.claimed_numbers import number_problems
-from cellcolor.checker.color_regions import ColorRegion, regions_of_cells
 from cellcolor.checker.dart_lists import NoLists, live_lists
-from cellcolor.checker.drawable import can_be_drawn
-from cellcolor.checker.groups import Groups
+from cellcolor.checker.groups import ColorRegion, Groups, regions_of_cells
 from cellcolor.checker.scheme_rules import (
     Joinable,
     PaintedCell,
     as_one,
+    can_be_drawn,
     crossing,
     idle_cut,
     on_loops,
@@ -156,7 +155,7 @@ def _legal(division: Division, stuck: Strand | None, not_canonical: Sequence[str
     if stuck is not None:
         text = (
             f"edge {_edge(stuck)}: shows one joinable color on both sides in state 0; join it "
-            "(cellcolor.solvers.joining.joined does)"
+            "(cellcolor.solvers.cpsat.painting.joined does)"
         )
         problems.insert(0, text)
     return Report(tuple(problems), tuple(not_canonical), segments)

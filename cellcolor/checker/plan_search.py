@@ -18,8 +18,7 @@ from dataclasses import dataclass
 from functools import reduce
 from operator import or_
 
-from cellcolor.checker.color_regions import ColorRegion
-from cellcolor.checker.groups import Groups
+from cellcolor.checker.groups import ColorRegion, Groups
 
 
 @dataclass(frozen=True, slots=True)

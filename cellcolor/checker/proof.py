@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from cellcolor.checker.color_regions import ColorRegion
+from cellcolor.checker.groups import ColorRegion
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline
 

@@ -11,8 +11,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import check_solution
+from cellcolor.checker.groups import regions_on_surface
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.door.installed import extras_for

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, Unpack, overload
 
 from cellcolor.checker.claimed_numbers import contradictions
-from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import Report, check_solution
+from cellcolor.checker.groups import regions_on_surface
 from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory import Trajectory, TrajectoryTable
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict

@@ -145,7 +145,7 @@ def side_of(
     Raises:
         InputError: the part has no such side.
     """
-    from cellcolor.frontend.parts.sides import facing, pieces, shell_sides, thickness
+    from cellcolor.frontend.parts.cover import facing, pieces, shell_sides, thickness
 
     thick = thickness(mesh)
     sides = None if thick is None else shell_sides(mesh)
@@ -182,7 +182,7 @@ def _side(mesh: TriangleMesh, sides: list[Mask], outside: Outside | None) -> tup
 
     Without a wish that is the outer one; of a flat shell the one that faces up and to the robot.
     """
-    from cellcolor.frontend.parts.sides import facing
+    from cellcolor.frontend.parts.cover import facing
 
     first, second = (facing(mesh, side) for side in sides)
     areas = [float(mesh.areas[side].sum()) for side in sides]
@@ -201,7 +201,7 @@ def _flipped(mesh: TriangleMesh, outside: Outside | None) -> bool:
     Raises:
         InputError: it is closed, or faces every way.
     """
-    from cellcolor.frontend.parts.sides import facing
+    from cellcolor.frontend.parts.cover import facing
 
     if outside is None:
         return False
@@ -218,7 +218,7 @@ def _flipped(mesh: TriangleMesh, outside: Outside | None) -> bool:
 
 def _cover(mesh: TriangleMesh, faces: Mask) -> str:
     """The scene's table for one side."""
-    from cellcolor.frontend.parts.sides import SHARP_RAD, inner_point
+    from cellcolor.frontend.parts.cover import SHARP_RAD, inner_point
 
     seed = [round(x, 6) + 0.0 for x in inner_point(mesh, faces).tolist()]
     return (
@@ -277,8 +277,7 @@ def _home_over(prepared: PreparedScene) -> tuple[list[float], str] | None:
 def home_of(prepared: PreparedScene) -> tuple[list[float] | None, str]:
     """A free position over the part, or near the middle of the joints' limits, rad; and which."""
     from cellcolor.motion.free_space import FreeSpace
-    from cellcolor.motion.home import free_near
-    from cellcolor.motion.limits import motion_of
+    from cellcolor.motion.limits import free_near, motion_of
 
     over = _home_over(prepared)
     if over is not None:

@@ -14,23 +14,25 @@ import numpy as np
 
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
-from cellcolor.frontend.arm.far_shapes import notes_on_shapes, too_large
+from cellcolor.frontend.arm.body import Shape
+from cellcolor.frontend.arm.notes import notes_on_shapes, too_large
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.shape import Shape
 from cellcolor.frontend.contact.engine import Contacts, always_touching, pairs_of
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_units
+from cellcolor.frontend.parts.cover import note_on_shell
 from cellcolor.frontend.parts.inspection import note_on_crossings
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.rounding import note_on_triangles
-from cellcolor.frontend.parts.sides import note_on_shell
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.prepared_arm import PreparedArm, prepare_arm
 from cellcolor.frontend.reach.sheets import in_sheets
 from cellcolor.frontend.reach.validity import Judge
 from cellcolor.frontend.reach.validity_tests import Workplace
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.sizes import check_points
+
+_MOST_POINTS = 20_000_000  # on all mesh edges; each is tested for up to eight branches
+_MOST_ON_AN_EDGE = 500_000  # they are tested together
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,9 +143,14 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     with naming(setup.file):
         check_setup(setup, surface, scene, reach)
         for key in ("probe_spacing_m", "validity_spacing_m"):
-            spacing = getattr(setup.continuity, key)
-            if spacing is not None:
-                check_points(lengths, spacing, f"continuity.{key}")
+            counts = np.ceil(lengths / (getattr(setup.continuity, key) or np.inf))
+            total = float(counts.sum())
+            if total > _MOST_POINTS or counts.max() > _MOST_ON_AN_EDGE:
+                message = (
+                    f"puts {total:.2g} points on the mesh's edges, {counts.max():.2g} on the "
+                    f"longest; at most {_MOST_POINTS:,} and {_MOST_ON_AN_EDGE:,} are tested"
+                )
+                raise InputError(None, f"continuity.{key}", message)
     shape = covered
     if scene.solid_object is not None:
         shape = scene.solid_object.surface(scene.folder, deadline)

@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask, unit
 from cellcolor.data.wording import count
+from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.arm.kinematics import frames_along
-from cellcolor.frontend.arm.shape import Shape
+from cellcolor.frontend.arm.notes import StandInReport, measured
 from cellcolor.frontend.contact.engine import meet
-from cellcolor.frontend.contact.stand_in_report import StandInReport, measured
-from cellcolor.frontend.parts.sides import spread
+from cellcolor.frontend.parts.cover import spread
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.continuity import Coloring

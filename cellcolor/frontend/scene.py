@@ -22,14 +22,13 @@ from pydantic import (
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
-from cellcolor.frontend.contact.movement import HalfSpace
 from cellcolor.frontend.contact.obstacle import OBSTACLES, Obstacle
+from cellcolor.frontend.contact.tip import HalfSpace
 from cellcolor.frontend.parts.cover import Cover
 from cellcolor.frontend.parts.mesh import ArraysObject
-from cellcolor.frontend.parts.part import PARTS, Part
 from cellcolor.frontend.parts.placement import Placement, Tolerance, rotation_from_rpy
 from cellcolor.frontend.parts.rounding import rounded
-from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.parts.surface import PARTS, Part, Surface
 from cellcolor.frontend.reach.validity import STANDARD_REASONS
 from cellcolor.frontend.reach.validity_tests import VALIDITY_TESTS, ValidityTest
 from cellcolor.frontend.setup import Setup

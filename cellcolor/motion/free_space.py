@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from cellcolor.arrays import Array, Mask
-from cellcolor.frontend.arm.body import Body
+from cellcolor.frontend.arm.body import Body, Shape
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.shape import Shape
 from cellcolor.frontend.contact.engine import Contacts, Pair, always_touching, pairs_of, poses_along
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.following import joint_space

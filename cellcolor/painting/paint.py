@@ -9,8 +9,8 @@ from heapq import heapify, heappop, heappush
 import numpy as np
 
 from cellcolor.arrays import Array, Index
+from cellcolor.checker.dart_lists import WholeSubCell
 from cellcolor.checker.vertex_plan import check_plan
-from cellcolor.checker.whole_subcells import WholeSubCell
 from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution

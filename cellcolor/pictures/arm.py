@@ -13,8 +13,8 @@ from cellcolor.frontend import BuildResult
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.movement import HalfSpace
 from cellcolor.frontend.contact.obstacle import Obstacle
+from cellcolor.frontend.contact.tip import HalfSpace
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.pictures.mesh_picture import eye
 from cellcolor.pictures.picture import FAINT, Layer, Picture3D, SpaceLines, Text

@@ -19,12 +19,23 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
-from cellcolor.frontend.build import BuildResult, build_prepared
-from cellcolor.frontend.judging_again import built_asking_less, built_asking_more
+from cellcolor.frontend.build import BuildResult, StageClock, build_prepared
 from cellcolor.frontend.prepared import PreparedScene
+<<<<<<< HEAD
 from cellcolor.frontend.relaxing import TOOL_LENGTH, Relaxation, relaxations_of, without
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.questions.answers import Explanation, RelaxedMinimum
+=======
+from cellcolor.frontend.relaxing import (
+    TOOL_LENGTH,
+    Relaxation,
+    built_asking_less,
+    built_asking_more,
+    relaxations_of,
+    without,
+)
+from cellcolor.questions.answers import Explanation, RelaxedMinimum
+>>>>>>> main
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 

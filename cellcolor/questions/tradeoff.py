@@ -23,7 +23,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.questions.answers import Front, FrontPoint
 from cellcolor.solvers import checked
 from cellcolor.solvers.bounds.cover import Region, color_regions
-from cellcolor.solvers.cpsat.leaving_out import least_left_out
+from cellcolor.solvers.cpsat.complete_model import least_left_out
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
 

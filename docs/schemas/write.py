@@ -123,7 +123,7 @@ def _format_schema(described: Format) -> dict[str, Any]:
 def _table_schema(file: str) -> dict[str, Any]:
     """A scene's or a setup's. It needs the extra ``frontend``."""
     from cellcolor.frontend.contact.obstacle import OBSTACLES
-    from cellcolor.frontend.parts.part import PARTS
+    from cellcolor.frontend.parts.surface import PARTS
     from cellcolor.frontend.reach.validity_tests import VALIDITY_TESTS
     from cellcolor.frontend.scene import Scene
     from cellcolor.frontend.setup import Setup

@@ -114,11 +114,6 @@ def test_what_is_written_is_valid(document: Document) -> None:
     schema_of(document).validate(document)
 
 
-def test_every_format_is_written_here() -> None:
-    known = {described.kind.FORMAT for described in WRITE.FORMATS.values()}
-    assert {document["format"] for document in WRITTEN} == known
-
-
 @pytest.mark.parametrize(
     "path",
     [

@@ -9,23 +9,15 @@ import itertools
 
 import coal
 import numpy as np
-import pinocchio as pin
 import pytest
-from independent import CONTACT
+from independent import CONTACT, kinematics_apart
 from reasons import Reason
 from shipped import TOP, shipped
 from world import World
 
-from cellcolor.arrays import Array
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.arm.kinematics import (
-    forward,
-    manipulability,
-    task_determinant,
-    tip_jacobian,
-)
 from cellcolor.frontend.contact.obstacle import CylinderObstacle
-from cellcolor.frontend.prepared import PreparedScene, prepare
+from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
 
 pytestmark = pytest.mark.second
@@ -66,33 +58,6 @@ def not_neighbors(world: World) -> set[frozenset[str]]:
     return {frozenset(pair) for pair in itertools.combinations(way, 2)} - beside
 
 
-def kinematics_apart(prepared: PreparedScene, joints: Array) -> float:
-    """The largest difference from Pinocchio in poses, Jacobian and both measures."""
-    robot = prepared.robot
-    model, data = robot.model, robot.model.createData()
-    tip = model.getFrameId(prepared.setup.robot.tip_link)
-    poses = forward(robot, joints)
-    linear, angular = tip_jacobian(poses)
-    task = robot.task
-    measure = manipulability(linear, task)
-    determinant = task_determinant(linear, angular, poses.tool_axis, task)
-    rows = [0, 1, 2, *([3, 4] if task.direction else []), *([5] if task.turn else [])]
-    worst = 0.0
-    for row, q in enumerate(joints):
-        own = pin.computeFrameJacobian(model, data, q, tip, pin.ReferenceFrame.LOCAL)
-        pin.framesForwardKinematics(model, data, q)
-        there = data.oMf[tip]
-        for ours, theirs in (
-            (poses.tip[row], there.translation),
-            (poses.tool_axis[row], there.rotation[:, 2]),
-            (linear[row], there.rotation @ own[:3]),
-            (measure[row], np.linalg.svd(own[:3, : task.joints], compute_uv=False).prod()),
-            (determinant[row], abs(np.linalg.det(own[rows, : task.joints]))),
-        ):
-            worst = max(worst, float(np.abs(ours - theirs).max()))
-    return worst
-
-
 @pytest.mark.parametrize(
     ("vertices", "count"), [(150, 100), pytest.param(1000, 2000, marks=pytest.mark.slow)]
 )
@@ -105,7 +70,7 @@ def test_candidates_against_pinocchio_and_coal(name: str, vertices: int, count: 
     solved = np.flatnonzero(built.reasons.ravel() != Reason.NO_SOLUTION)
     rows = np.random.default_rng(5).choice(solved, min(count, len(solved)), replace=False)
     joints = flat[rows]
-    assert kinematics_apart(prepared, joints) < 1e-9
+    assert kinematics_apart(prepared.robot, joints, torques=False) < 1e-9
 
     robot, ground = prepared.robot, scene.ground
     assert ground is not None

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 from dirty import BOX, OUTWARD, obj
-from shipped import ROBOTS, SCENES
+from shipped import SCENES
 
 from cellcolor.cli import main
 from cellcolor.errors import InputError
@@ -197,12 +196,3 @@ def test_joint_limits_of_a_full_turn_and_more(scene: Varied) -> None:
     assert motion_of(prepare(scene(setup={"home_rad": home}))).home_rad == home
     full = scene(rpy_rad=(6.2832, -6.2832, 0.0))
     assert full.placement.rpy_rad[0] == 6.2832
-
-
-def test_options_of_a_motion(scene_file: SceneFile, capsys: pytest.CaptureFixture[str]) -> None:
-    file = scene_file()
-    assert main(["plan", str(file), "-o", str(file.parent / "p"), "--tool-radius-m", "15"]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert re.search(r"motion\.tool_radius_m: .*15 looks like millimeters: 0\.015 m\?", line)
-    assert not (file.parent / "p").exists()
-    assert str(ROBOTS) not in line

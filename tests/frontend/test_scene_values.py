@@ -12,14 +12,12 @@ import trimesh
 from dirty import obj
 from hypothesis import given
 from hypothesis import strategies as st
-from pydantic import ValidationError
 from shipped import ROBOTS, WOK, edited
 
 from cellcolor.errors import InputError
 from cellcolor.frontend import Scene, Setup, build_surface
-from cellcolor.frontend.contact.obstacle import BoxObstacle, SphereObstacle
 from cellcolor.frontend.parts.mesh import ArraysObject
-from cellcolor.frontend.parts.shapes import CapObject, disc_mesh, spherical_cap
+from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
 from examples import examples
 
 SETUP = ROBOTS / "ur5_polishing.toml"
@@ -114,15 +112,6 @@ def test_files_cannot_say_where_they_are(tmp_path: Path) -> None:
         assert (caught.value.file, caught.value.field) == (str(file), key)
 
 
-def test_a_value_stays_as_it_is() -> None:
-    wok = Scene.read(WOK)
-    before = wok.model_dump()
-    wok.moved(position_m=(1, 2, 3)).with_obstacle(SphereObstacle(radius_m=1, position_m=(0, 0, 9)))
-    assert wok.model_dump() == before
-    with pytest.raises(ValidationError, match="frozen"):
-        wok.name = "pan"  # type: ignore[misc]
-
-
 def test_values_are_pickled_and_compared() -> None:
     scene = Scene.read(WOK).with_object((CORNERS, SIDES))
     again = pickle.loads(pickle.dumps(scene))
@@ -174,15 +163,6 @@ def test_a_part_as_arrays_or_a_mesh_is_the_one_in_a_file(tmp_path: Path) -> None
         assert found.vertex_colors == expected.vertex_colors
 
 
-def test_what_is_hit_can_be_another_mesh() -> None:
-    cap = CapObject(radius_m=0.2, half_angle_rad=1.1, target_vertices=100)
-    plate = np.array([[-1.5, -1.5, 0.1], [1.5, -1.5, 0.1], [1.5, 1.5, 0.1], [-1.5, 1.5, 0.1]])
-    scene = Scene.read(WOK).with_object(cap, (plate, [[0, 1, 2], [0, 2, 3]]))
-    # The plate cuts the base link off at the height of the wok's middle.
-    with pytest.raises(InputError, match="object stands in the robot"):
-        build_surface(scene)
-
-
 @pytest.mark.parametrize(
     ("vertices", "faces", "field"),
     [
@@ -206,13 +186,6 @@ def test_what_is_no_part_is_refused() -> None:
     for what in ("wok.stl", None, (CORNERS,)):
         with pytest.raises(InputError, match="must be a part"):
             Scene.read(WOK).with_object(what)
-
-
-def test_obstacles_are_added_one_after_the_other() -> None:
-    box = BoxObstacle(size_m=(0.1, 0.1, 0.1), position_m=[0.2, 0.0, 0.5])
-    ball = SphereObstacle(radius_m=np.float64(0.1), position_m=(0.0, 0.3, 0.5))
-    scene = Scene.read(WOK).with_obstacle(box).with_obstacle(ball)
-    assert scene.obstacle == (box, ball) == Scene.read(WOK).with_obstacle(box, ball).obstacle
 
 
 def test_names_of_files_are_relative_to_the_folder(tmp_path: Path) -> None:

@@ -18,7 +18,6 @@ from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
@@ -57,12 +56,6 @@ def test_one_setup_for_all() -> None:
     assert len({scene.setup for scene in scenes.values()}) == 1
 
 
-def test_one_hemisphere_over_one_ground_in_two_poses() -> None:
-    flat, tilted = (Scene.read(SCENES / f"hemisphere_{pose}.toml") for pose in ("flat", "tilted"))
-    assert flat.object == tilted.object and flat.ground == tilted.ground
-    assert flat.placement != tilted.placement
-
-
 @pytest.mark.parametrize("name", LIFT_OFFS)
 @pytest.mark.parametrize(
     "vertices", [500, *(pytest.param(fine, marks=pytest.mark.slow) for fine in (2000, 4000))]
@@ -95,23 +88,6 @@ def test_stored_surface_is_what_the_scene_gives(name: str) -> None:
         again.vertex_colors,
         again.cracks,
     )
-
-
-@pytest.mark.parametrize("name", LIFT_OFFS)
-def test_torques_exclude_nothing_at_20_n(name: str) -> None:
-    """Nor do joint limits and the tool's contact region, in any branch that has a solution."""
-    prepared = prepare(shipped(name, 500))
-    assert prepared.setup.task.normal_force_n == 20.0
-    vertices, normals = prepared.surface.vertices, prepared.surface.normals
-    solutions = prepared.arm.inverse(vertices, -normals).reshape(-1, 6)
-    solutions = solutions[~np.isnan(solutions[:, 0])]
-
-    def excludes(test: str) -> bool:
-        """Whether it does so by itself, whatever the other tests say."""
-        return not prepared.judge.only(frozenset({test}))(solutions).valid.all()
-
-    assert not any(map(excludes, ("torque", "joint limits", "tip blocked")))
-    assert excludes("self collision")
 
 
 def test_flat_hemisphere_is_not_fully_reachable_and_needs_four_colors() -> None:

@@ -16,8 +16,9 @@ from hypothesis import strategies as st
 
 from cellcolor.cli import main
 from cellcolor.errors import InputError
-from cellcolor.frontend import build_surface, sizes
+from cellcolor.frontend import build_surface
 from cellcolor.frontend.contact.obstacle import BoxObstacle
+from cellcolor.frontend.parts import surface
 from cellcolor.frontend.parts.mesh_file import load_mesh
 from cellcolor.frontend.parts.surface import refine
 from cellcolor.frontend.scene import Scene
@@ -76,13 +77,13 @@ def test_refused_with_the_number(
 
 def test_a_mesh_with_too_many_vertices(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "box.obj").write_text(obj(BOX, OUTWARD))
-    monkeypatch.setattr(sizes, "MOST_VERTICES", 7)
+    monkeypatch.setattr(surface, "MOST_VERTICES", 7)
     with pytest.raises(InputError, match="8 vertices, at most 7") as caught:
         load_mesh(tmp_path / "box.obj", 1.0)
     assert caught.value.file == str(tmp_path / "box.obj")
     # Where corners are still to be told apart, that many faces are enough to know.
     trimesh.Trimesh(BOX, OUTWARD).export(tmp_path / "box.stl")
-    monkeypatch.setattr(sizes, "MOST_VERTICES", 3)
+    monkeypatch.setattr(surface, "MOST_VERTICES", 3)
     with pytest.raises(InputError, match="there are 12, at most 3 vertices"):
         load_mesh(tmp_path / "box.stl", 1.0)
 
@@ -93,16 +94,16 @@ def test_what_is_refused_would_have_been_too_much(seed: int, longest: float) -> 
     corners = np.random.default_rng(seed).uniform(0, 1, (4, 3))
     faces = np.array([[0, 1, 2], [1, 0, 3]])
     vertices = refine(TriangleMesh(corners, faces), longest)[0].points
-    most = sizes.MOST_VERTICES
+    most = surface.MOST_VERTICES
     try:
-        sizes.MOST_VERTICES = len(vertices)
+        surface.MOST_VERTICES = len(vertices)
         assert len(refine(TriangleMesh(corners, faces), longest)[0].points) == len(vertices)
-        sizes.MOST_VERTICES = len(vertices) - 1
+        surface.MOST_VERTICES = len(vertices) - 1
         if len(vertices) > 4:
             with pytest.raises(InputError, match="vertices"):
                 refine(TriangleMesh(corners, faces), longest)
     finally:
-        sizes.MOST_VERTICES = most
+        surface.MOST_VERTICES = most
 
 
 def test_a_mesh_too_coarse_for_what_stands_there(scene: Varied) -> None:

@@ -84,14 +84,6 @@ def test_no_shipped_scene_is_warned_of(scene: Path) -> None:
     assert survey_of(prepared).warnings == ()
 
 
-def test_what_cannot_be_told(geometry: UrGeometry) -> None:
-    """A closed mesh has an outside of its own, wherever it is."""
-    corners = np.array([[0.4, 0, 0], [0.6, 0, 0], [0.4, 0.2, 0], [0.4, 0, 0.2]])
-    faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
-    closed = Surface(corners, faces, np.zeros((4, 3)))
-    assert survey(turned_over(closed), geometry.viewpoints, np.zeros(3)).from_behind == 0
-
-
 def test_report_and_commands_warn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The square with its outside down: the same mesh wound the other way round."""
     text = (SCENES / "square.toml").read_text().replace("../../models", f"{SCENES}/../../models")

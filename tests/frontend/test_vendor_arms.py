@@ -12,42 +12,13 @@ from meshed_arm import with_collision, write_package
 from shipped import ROBOTS
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.build import BuildResult, build_surface
+from cellcolor.frontend.build import build_surface
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Setup
 
-TOOL = ROBOTS / "polishing_tool.urdf"
 Varied = Callable[..., Scene]
 NO_FORCE = {"force": False}
-MARGINS = {"to_object_m": 0.003, "to_obstacles_m": 0.01, "to_ground_m": 0.01,
-           "between_links_m": 0.004}  # fmt: skip
-
-
-def meshed(scene: Varied, folder: Path, **setup: object) -> BuildResult:
-    """The wok under the UR5 with meshes, which stand in a package in the folder."""
-    package = folder / "toy_description"
-    if not package.exists():
-        write_package(folder, "toy_description")
-    wok = scene(target_vertices=100)
-    robot = {"arm_urdf": str(package / "urdf" / "arm.urdf")} | setup.pop("robot", {})  # type: ignore[operator]
-    return build_surface(wok.with_setup(wok.setup.varied(robot=robot, **setup)))
-
-
-@pytest.mark.slow
-def test_a_hull_and_margins_only_take_away(scene: Varied, tmp_path: Path) -> None:
-    exact = meshed(scene, tmp_path, robot={"mesh_collision": "exact"})
-    hull = meshed(scene, tmp_path)
-    with_margins = meshed(scene, tmp_path, margins=MARGINS)
-    valid = [result.reasons == 0 for result in (exact, hull, with_margins)]
-    assert valid[0].sum() > valid[1].sum() > valid[2].sum() > 0
-    assert not (valid[1] & ~valid[0]).any() and not (valid[2] & ~valid[1]).any()
-    lines = str(hull.report).splitlines()
-    found = [line for line in lines if line.startswith("collides  ")]
-    assert len(found) == 7
-    assert any("'forearm_link': convex hull of forearm_link.stl, contains it" in x for x in found)
-    assert "overlap" not in str(hull.report)
-    assert {s.chosen for s in exact.report.stand_ins} == {"exact"}
 
 
 def test_one_link_can_be_chosen_for_itself(tmp_path: Path) -> None:

@@ -18,12 +18,17 @@ from shipped import SCENES, shipped
 import cellcolor
 from cellcolor.deadline import NEVER
 from cellcolor.frontend import BuildResult, Scene, build_surface
-from cellcolor.frontend.build import build_prepared
-from cellcolor.frontend.judging_again import built_asking_less, built_asking_more
+from cellcolor.frontend.build import StageClock, build_prepared
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach import validity
-from cellcolor.frontend.relaxing import TOOL_LENGTH, Relaxation, relaxations_of, without
-from cellcolor.frontend.stage_clock import StageClock
+from cellcolor.frontend.relaxing import (
+    TOOL_LENGTH,
+    Relaxation,
+    built_asking_less,
+    built_asking_more,
+    relaxations_of,
+    without,
+)
 from cellcolor.questions import explaining
 from cellcolor.questions.answers import Explanation, RelaxedMinimum
 from examples import examples

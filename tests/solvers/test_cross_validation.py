@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+import holes
 import pytest
-from exhaustive_minima import literal_minimum, live_darts, minimum, optimal_schemes
+from exhaustive_minima import live_darts, minimum, optimal_schemes
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
@@ -137,7 +137,14 @@ def compare(instance: Instance) -> None:
         assert found == schemes, (solver, len(found), len(schemes))
 
 
-@pytest.mark.parametrize("path", KNOWN, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, marks=[pytest.mark.second] * (path.stem == "three-loops"))
+        for path in KNOWN
+    ],
+    ids=lambda path: path.stem,
+)
 def test_known_cases(path: Path) -> None:
     """Results that come with the cases, from a proof or another program."""
     instance = Instance.read(path)
@@ -154,12 +161,6 @@ def test_known_cases(path: Path) -> None:
             assert found == instance.known.surface.segments, solver
     if live_loops(instance) < 2:
         compare(instance)
-
-
-def test_known_cases_are_there() -> None:
-    assert {"crossing-zeros", "three-loops", "annulus", "triple-junction"} <= {
-        path.stem for path in KNOWN
-    }
 
 
 @pytest.mark.parametrize("chunk", first_is_fast(range(CHUNKS)))
@@ -307,54 +308,8 @@ def test_surfaces_against_vertex_colorings(recipe: str, quarter: int) -> None:
         against_vertex_colorings(WITH_STRANDS, surface, instance)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("recipe", ["rim, three colors", *LOOPS])
-def test_more_surfaces_against_vertex_colorings(recipe: str) -> None:
-    """Many colors everywhere, islands and holes: strands and seams together are too much for a
-    depth-first search, so it takes part only without islands."""
-    for surface, instance in sample(recipe, 0):
-        solvers = WITH_STRANDS if recipe in SURFACES else WITH_STRANDS[1:]
-        against_vertex_colorings(solvers, surface, instance)
-
-
-@pytest.mark.parametrize("chunks", [1, pytest.param(CHUNKS, marks=pytest.mark.slow)])
-def test_random_surfaces_are_not_trivial(chunks: int, capsys: pytest.CaptureFixture[str]) -> None:
-    """What the random surfaces ask for, by the sets of schemes that brute force confirms.
-
-    With several workers pytest shows no output of passing tests: use ``-n 0`` to see the histogram.
-    """
-    traits: Counter[str] = Counter()
-    counts: Counter[str] = Counter()
-    for recipe in SURFACES:
-        for chunk in range(chunks):
-            for surface, instance in sample(recipe, chunk):
-                best = segments_of(PAPERS, instance, Options())
-                schemes = list(PAPERS.optimal_schemes(instance, Options(), best))
-                cut = all(any(len(cell.subcells) > 1 for cell in scheme) for scheme in schemes)
-                traits["surfaces"] += 1
-                traits["cut in every optimum"] += cut
-                traits["5 optima or more"] += len(schemes) >= 5
-                traits["one or the other"] += cut or len(schemes) >= 5
-                traits["cracks"] += bool(surface.cracks)
-                traits["self-edges"] += any(e.left == e.right for e in instance.edges)
-                traits["live self-edges"] += any(
-                    e.left == e.right and bool(instance.joinable(e.id)) for e in instance.edges
-                )
-                size = len(schemes)
-                bins = ((1, "1"), (2, "2"), (4, "3-4"), (9, "5-9"), (99, "10-99"))
-                counts[next((name for most, name in bins if size <= most), "100+")] += 1
-    with capsys.disabled():
-        print("\nrandom surfaces:", ", ".join(f"{name} {n}" for name, n in traits.items()))
-        bars = ("1", "2", "3-4", "5-9", "10-99", "100+")
-        print("optimal schemes:", ", ".join(f"{name}: {counts[name]}" for name in bars))
-    assert traits["surfaces"] == chunks * PER_CHUNK * len(SURFACES)
-    assert traits["one or the other"] >= 0.3 * traits["surfaces"]
-    for name in ("cut in every optimum", "5 optima or more", "cracks", "live self-edges"):
-        assert traits[name] >= 2 * chunks, name
-
-
 @pytest.mark.parametrize("seed", range(30))
 def test_brute_force_against_the_product_of_all_choices(seed: int) -> None:
     """The sweep over the cells that the solvers are held to, against trying everything at once."""
     instance = planar_graph(seed, 3, 5, 2, self_edges=seed % 2 == 1)
-    assert minimum(instance) == literal_minimum(instance)
+    assert (minimum(instance), optimal_schemes(instance)[1]) == holes.optimal_schemes(instance)

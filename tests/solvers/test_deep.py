@@ -2,25 +2,17 @@
 
 from __future__ import annotations
 
-import inspect
-import sys
 from itertools import pairwise
 
 import pytest
 
 from cellcolor.checker.certificates import verify_bound
-from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.division import check_solution
-from cellcolor.checker.drawable import can_be_drawn
-from cellcolor.checker.scheme_rules import PaintedCell, unavoidable_join_on_loops
+from cellcolor.checker.groups import regions_of_cells
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
-from cellcolor.lab.families.hubs import hub_minimum
-from cellcolor.solvers.bounds.cover import hard_cells
 from cellcolor.solvers.checked import solve
-from cellcolor.solvers.dfs.cell_schemes import cell_schemes
-from cellcolor.solvers.dfs.graph import Graph
 from cellcolor.solvers.interface import Options
 
 pytestmark = pytest.mark.slow
@@ -96,46 +88,3 @@ def test_rings_apart_have_a_certificate_and_the_reason_that_holds(number: int) -
     ]
     more = Bound("cover", 3 * number + 1, "surface", bound.certificate)
     assert verify_bound(instance, more, regions_of_cells(instance)).outcome == "refused"
-
-
-def test_hard_cells_of_rings_apart_are_those_of_each_ring() -> None:
-    found = hard_cells(rings(20), 60)
-    assert found is not None
-    assert [sum(cell // 5 == ring for cell in found) for ring in range(20)] == [5] * 20
-
-
-def test_a_cell_with_many_darts_has_a_first_scheme() -> None:
-    petals = tuple(Cell(n + 1, (0,), ((-(n + 1),),)) for n in range(DEEP))
-    hub = Cell(0, (0,), (tuple(range(1, DEEP + 1)),))
-    edges = tuple(Edge(n + 1, 0, n + 1) for n in range(DEEP))
-    instance = Instance("hub", ("red",), (hub, *petals), edges)
-    cell, _ = Graph(instance, 1).cell(0, 0)
-    first = next(cell_schemes(cell, [None] * DEEP))
-    assert first.subcells == ((0, tuple(range(DEEP))),)
-
-
-def test_a_cell_with_many_loops_can_be_drawn() -> None:
-    """Each loop shares two sub-cells with the next: cut open, they are one loop after the other."""
-    chain = [[2 * n, 2 * n + 1, 2 * n + 2, 2 * n + 3] for n in range(300)]
-    limit = sys.getrecursionlimit()
-    sys.setrecursionlimit(
-        len(inspect.stack()) + 100
-    )  # instead of a thousand loops, which take long
-    try:
-        assert can_be_drawn(chain)
-    finally:
-        sys.setrecursionlimit(limit)
-
-
-def test_loops_without_darts_in_state_1_are_tried_without_falling() -> None:
-    """Each of them faces the next and has one color only; none continues."""
-    loops = tuple(PaintedCell([(n, 1)], {}, [0]) for n in range(1, 1101))
-    cells = {n: [loop] for n, loop in enumerate(loops)}
-    assert unavoidable_join_on_loops(cells, lambda _: frozenset()) is None
-
-
-def test_the_minimum_of_a_hub_with_many_petals() -> None:
-    """Two colors in turn: of 2n petals n of one color are joined, or as many of both."""
-    assert hub_minimum([0] * 60) == 1
-    assert hub_minimum([0, 1] * 30) == 31
-    assert hub_minimum(range(1200)) == 1200

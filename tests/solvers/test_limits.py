@@ -11,22 +11,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES
 
-import cellcolor
 from cellcolor.checker.division import check_solution
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
-from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
-from cellcolor.errors import InputError, TooLarge
+from cellcolor.errors import TooLarge
 from cellcolor.lab.families import blobs, hub, planar_graph
 from cellcolor.lab.families.hubs import hub_with_loops
 from cellcolor.solvers.bounds.cover import color_regions, greedy_independent_set, set_cover
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import CompleteModel, complete_model
 from cellcolor.solvers.cpsat import part as part_module
-from cellcolor.solvers.cpsat.dart_graph import complete_graph, split
-from cellcolor.solvers.cpsat.sectors import sector_graph
+from cellcolor.solvers.cpsat.dart_graph import split
 from cellcolor.solvers.interface import Options
 from examples import examples
 
@@ -134,23 +131,6 @@ def test_what_is_too_large_is_not_built_and_that_is_said(monkeypatch: pytest.Mon
     assert found.status == "optimal" or any("was not built" in note for note in found.notes)
 
 
-@pytest.mark.slow
-def test_the_complete_model_of_each_shipped_graph_is_small_enough() -> None:
-    for path in sorted(INSTANCES.rglob("*.json")):
-        if path.name == "large_part_1.json":  # seams in 44 cells make four times as many
-            continue
-        try:
-            subject = cellcolor.read(path)
-        except InputError:  # the index of the library
-            continue
-        if isinstance(subject, LabelledSurface):
-            subject = cellcolor.decompose(subject)
-        if not isinstance(subject, Instance):
-            continue
-        graph = complete_graph(subject, dict.fromkeys(subject.live_edges, 1))
-        sector_graph(graph, most_colors=complete_model.MOST_LITERALS)  # or it raises
-
-
 @pytest.mark.second
 @pytest.mark.parametrize(("loops", "petals"), [(6, 4), (20, 3)])
 def test_many_loops(loops: int, petals: int) -> None:
@@ -173,44 +153,6 @@ def test_a_real_part_is_proved(name: str) -> None:
 
 
 # --- parts ----------------------------------------------------------------------------------------
-
-
-def side_by_side(instances: list[Instance]) -> Instance:
-    """Several instances as one, with nothing between them."""
-    cells: list[Cell] = []
-    edges: list[Edge] = []
-    for instance in instances:
-        first, low = len(cells), max((edge.id for edge in edges), default=0)
-
-        def turned(dart: int, low: int = low) -> int:
-            return dart + low if dart > 0 else dart - low
-
-        cells += [
-            Cell(
-                cell.id + first, cell.colors, tuple(tuple(map(turned, loop)) for loop in cell.loops)
-            )
-            for cell in instance.cells
-        ]
-        edges += [
-            Edge(
-                edge.id + low,
-                *(side + first if side >= 0 else side for side in (edge.left, edge.right)),
-                edge.colors,
-            )
-            for edge in instance.edges
-        ]
-    names = max((instance.colors for instance in instances), key=len)
-    return Instance("side by side", names, tuple(cells), tuple(edges))
-
-
-@examples(12)
-@given(seeds=st.lists(SEEDS, min_size=2, max_size=3), cells=st.integers(2, 6))
-def test_minima_of_parts_add_up(seeds: list[int], cells: int) -> None:
-    instances = [planar_graph(seed, cells, cells + 3, 3) for seed in seeds]
-    apart = [solve(instance, Options(workers=1), "dfs") for instance in instances]
-    together = solve(side_by_side(instances), Options(workers=1))
-    assert together.status == "optimal"
-    assert together.segments == sum(found.segments or 0 for found in apart)
 
 
 @examples(20)

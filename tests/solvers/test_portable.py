@@ -20,7 +20,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.errors import InputError, TooLarge
 from cellcolor.files.writing import shipped_folder
-from cellcolor.lab.families import hub, hub_grid, hub_minimum, hub_with_loops, planar_graph
+from cellcolor.lab.families import hub, planar_graph
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.linear.coloring import Coloring, estimated_terms
@@ -93,19 +93,6 @@ def test_model_of_random_graphs(seed: int, cells: int, more: int, self_edges: bo
     assert minimum_of_model(instance) == known_minimum(instance)
 
 
-def test_model_of_hubs() -> None:
-    """Around a hub divisions nest, and links cross each other unless they are kept from it."""
-    instance = hub(0, 12, 4)
-    ring = [cell.colors[0] for cell in instance.cells[1:]]
-    assert minimum_of_model(instance) == hub_minimum(ring)
-
-
-def test_circles_of_joins_do_not_pay() -> None:
-    """A ring of red cells between an inner and an outer blue area: 3 segments, not 2."""
-    ring = Instance.read(PAPER / "ring.json")
-    assert minimum_of_model(ring) == known_minimum(ring)
-
-
 def test_clauses_say_what_the_rows_say() -> None:
     """At most one of n literals, also of more than the pairs of which are written down."""
     for size in range(2, 10):
@@ -133,31 +120,6 @@ def test_what_is_too_large_is_refused_before_it_is_made(tmp_path: Path) -> None:
     assert not target.exists()
 
 
-def test_the_estimate_is_about_right() -> None:
-    for instance in (hub(0, 24, 4), hub(0, 44, 4), hub_grid(0, 3, 3, 4)):
-        terms = sum(len(literals) for _, literals in Coloring(instance).model.rows())
-        assert terms <= 1.2 * estimated_terms(instance) <= 10 * terms
-
-
-@pytest.mark.parametrize("name", list(PORTABLE))
-def test_cells_with_several_loops_are_written(name: str, tmp_path: Path) -> None:
-    target = tmp_path / f"annulus.{name}"
-    assert run("export", PAPER / "annulus.json", "-o", target) == 0
-    assert target.stat().st_size > 0
-
-
-def test_seams_with_far_too_many_strands_are_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Each of many seams may need as many strands as half of the cell's darts."""
-    file, target = tmp_path / "loops.json", tmp_path / "loops.opb"
-    file.write_text(hub_with_loops(0, 150, 2, 2).to_json())
-    assert run("export", file, "-o", target) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert "the seams need" in line and "strands" in line
-    assert not target.exists()
-
-
 def test_files_of_ours_only_are_overwritten(tmp_path: Path) -> None:
     for name in PORTABLE:
         target = tmp_path / f"a.{name}"
@@ -175,19 +137,6 @@ def test_the_ending_says_the_format(tmp_path: Path, capsys: pytest.CaptureFixtur
 
 
 # --- solvers really run on the files -------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", ["annulus", "split-cell"])
-def test_the_complete_model_is_solved_from_its_file(name: str, tmp_path: Path) -> None:
-    target = tmp_path / "model.pbtxt"
-    assert run("export", PAPER / f"{name}.json", "-o", target) == 0
-    model = cp_model.CpModel()
-    model.proto.parse_text_format(target.read_text())
-    solver = cp_model.CpSolver()
-    assert solver.solve(model) == cp_model.OPTIMAL
-    known = Instance.read(PAPER / f"{name}.json").known
-    assert known is not None and known.paper is not None
-    assert round(solver.objective_value) == known.paper.segments
 
 
 def highs(file: Path) -> str:

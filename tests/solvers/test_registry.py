@@ -26,6 +26,7 @@ from cellcolor.solvers.registry import (
 )
 from cellcolor.version import __version__
 
+Capture = pytest.CaptureFixture[str]
 RING = PAPER / "ring.json"
 INSTANCE = Instance.read(RING)
 ANNULUS = Instance.read(PAPER / "annulus.json")  # a cell with two live loops
@@ -128,11 +129,6 @@ def test_the_command_refuses_in_one_line(
     assert not target.exists()
 
 
-def test_unknown_names_list_what_there_is() -> None:
-    with pytest.raises(InputError, match="solver: there is no 'nobody'; there are cp-sat, cp-sat-"):
-        make_solver("nobody")
-
-
 def test_a_missing_extra_is_named(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -179,31 +175,9 @@ class TestOthers:
         with pytest.raises(SolverMissing, match="echo is not installed: apt install echo"):
             make_solver("echo")
 
-    def test_do_not_replace_our_own(self, others: Path) -> None:
-        install(others, "echoes", GROUP, {"cp-sat": "echo_solver:Echo"}, echo_solver=ECHO)
-        assert solver_names() == OWN_NAMES
-        assert type(make_solver("cp-sat")).__name__ == "CpSatSolver"
-
-    def test_two_of_one_name(self, others: Path) -> None:
-        install(others, "one", GROUP, {"echo": "echo_solver:Echo"}, echo_solver=ECHO)
-        install(others, "two", GROUP, {"echo": "other_solver:Echo"})
-        with pytest.raises(InputError, match=r"'echo' is registered as .* and as .*_solver:Echo"):
-            make_solver("echo")
-
-    @pytest.mark.parametrize(
-        ("text", "message"),
-        [
-            ("import nothing_like_it", "cannot be loaded: ModuleNotFoundError"),
-            ("1 / 0", "cannot be loaded: ZeroDivisionError"),
-            ("Other = 1", "cannot be loaded: AttributeError"),
-            ("class Echo: pass", "is not a solver: it declares no abilities"),
-        ],
-    )
-    def test_faults_are_a_line(
-        self, others: Path, text: str, message: str, capsys: pytest.CaptureFixture[str]
-    ) -> None:
+    def test_what_declares_nothing_is_no_solver(self, others: Path, capsys: Capture) -> None:
+        text = "class Echo: pass"
         install(others, "faulty", GROUP, {"echo": "echo_solver:Echo"}, echo_solver=text)
         assert run("solve", RING, "--solver", "echo") == 2
         (line,) = capsys.readouterr().err.splitlines()
-        assert "solver: 'echo', registered as echo_solver:Echo, " in line
-        assert message in line
+        assert "solver: 'echo', registered as echo_solver:Echo, is not a solver: it decl" in line

@@ -1,27 +1,34 @@
-"""Every rule of schemes (docs/semantics.md, section 3), taken out of one of the two searches.
+"""Both searches list just the schemes that the definition names (docs/semantics.md, section 3).
 
-Both list just the schemes that the definition names. Without a rule one of the graphs below has
-others, so :func:`test_the_schemes_of_the_definition` fails for it.
+Each of the graphs below has other schemes for a search without one of the rules.
 """
 
 from __future__ import annotations
 
-from functools import cache
+import itertools
+import random
 from typing import Any
 
 import exhaustive_minima
 import holes
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 from library import PAPER
-from mutants import change
+from relabelled import turned
 from rooms import BLUE, GREEN, RED, graph, petal_cells
 
+from cellcolor.checker.division import check_scheme
+from cellcolor.checker.scheme_rules import can_be_drawn
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import SchemeKey, scheme_key
-from cellcolor.lab.families import planar_graph
+from cellcolor.data.solution import Division, SchemeKey, number_segments, scheme_key
+from cellcolor.decomposition import decompose
+from cellcolor.lab.families import blobs, planar_graph
+from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.dfs import ReferenceSolver
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 BOTH = RED, BLUE
 ALL = RED, BLUE, GREEN
@@ -68,6 +75,7 @@ HOLES = {
     "on two loops": holes.holed(25, 5, 2, 3),
     "on three loops": holes.holed(0, 5, 3, 2),
     "a loop in either": holes.holed(20, 5, 3, 2),
+    "annulus": Instance.read(PAPER / "annulus.json"),
     "crack": graph(
         (BOTH, (1, 2, 5, -5), (3, 4)), *petal_cells(RED, BLUE, RED, BLUE), cracks={5: (BLUE,)}
     ),
@@ -84,410 +92,110 @@ HOLES = {
 }
 
 
-@cache
-def defined(holed: bool, name: str) -> tuple[int, set[SchemeKey]]:
-    """The minimum and the optimal schemes, by brute force."""
-    return (
-        holes.optimal_schemes(HOLES[name])
-        if holed
-        else exhaustive_minima.optimal_schemes(ONE_LOOP[name])
-    )
-
-
-def as_defined(solver: CpSatSolver | ReferenceSolver, name: str, holed: bool = False) -> bool:
-    """Whether a solver lists just these schemes, each once; an error is no list."""
-    segments, schemes = defined(holed, name)
-    instance = (HOLES if holed else ONE_LOOP)[name]
-    try:
-        found = [scheme_key(d) for d in solver.optimal_schemes(instance, Options(), segments)]
-    except (KeyError, ValueError):  # of a search without one of its rules
-        return False
-    return len(found) == len(set(found)) and set(found) == schemes
+def listed(solver: CpSatSolver | ReferenceSolver, instance: Instance, segments: int) -> list[Any]:
+    return [scheme_key(d) for d in solver.optimal_schemes(instance, Options(), segments)]
 
 
 @pytest.mark.parametrize("name", ONE_LOOP)
 @pytest.mark.parametrize("solver", [CpSatSolver(), ReferenceSolver()])
 def test_the_schemes_of_the_definition(solver: CpSatSolver | ReferenceSolver, name: str) -> None:
-    assert as_defined(solver, name)
+    segments, schemes = exhaustive_minima.optimal_schemes(ONE_LOOP[name])
+    found = listed(solver, ONE_LOOP[name], segments)
+    assert len(found) == len(schemes) and set(found) == schemes
 
 
 @pytest.mark.parametrize("name", HOLES)
 def test_the_schemes_of_the_definition_with_holes(name: str) -> None:
-    assert as_defined(CpSatSolver(), name, holed=True)
+    segments, schemes = holes.optimal_schemes(HOLES[name])
+    found = listed(CpSatSolver(), HOLES[name], segments)
+    assert len(found) == len(schemes) and set(found) == schemes
 
 
-DIVISIONS = "cellcolor.solvers.cpsat.cell_divisions"
-FRONTIER = "cellcolor.solvers.cpsat.frontier"
-SHOWN = "cellcolor.solvers.cpsat.shown_colors"
-CODES = "cellcolor.solvers.dfs.cell_schemes"
-ZEROS = "cellcolor.solvers.dfs.search"
-
-RULES = [
-    # What is taken out, where, the source with and without it, and the graph whose test falls.
-    (
-        "1, an edge of the cell with itself",
-        DIVISIONS,
-        "options[place] if twin is None or twin > place else [states[twin]]",
-        "options[place]",
-        "drawn 4, self-edges",
-    ),
-    (
-        "1, edges",
-        FRONTIER,
-        "known = tuple(states.get(darts[dart].twin) for dart in self._graph.lists[cell])",
-        "known = (None,) * len(self._graph.lists[cell])",
-        "drawn 2",
-    ),
-    (
-        "2, blocks do not cross",
-        DIVISIONS,
-        "yield from decide(stack[: level + 1], block)",
-        "yield from decide(stack, block)",
-        "drawn 4",
-    ),
-    (
-        "2, at least two darts",
-        DIVISIONS,
-        "min(map(len, members)) > 1 and (last == 0",
-        "(last == 0",
-        "drawn 2",
-    ),
-    (
-        "3, joinable",
-        DIVISIONS,
-        "[ZERO, *sorted(graph.darts[dart].colors)]",
-        "[ZERO, *sorted(graph.colors[cell])]",
-        "crossing-zeros",
-    ),
-    (
-        "3, one color",
-        DIVISIONS,
-        "if colors[block] == color and (block == last",
-        "if (block == last",
-        "crossing-zeros",
-    ),
-    (
-        "3, any color without a dart in state 1",
-        DIVISIONS,
-        "for color in sorted(graph.colors[cell]))",
-        "for color in sorted(graph.colors[cell])[:1])",
-        "drawn 2",
-    ),
-    (
-        "4, a block that goes on",
-        DIVISIONS,
-        "if colors[block] == color and (block == last or colors[last] != color):",
-        "if colors[block] == color:",
-        "inside",
-    ),
-    (
-        "4, a new block",
-        DIVISIONS,
-        "if last < 0 or colors[last] != color:",
-        "if True:",
-        "crack around",
-    ),
-    (
-        "4, the last dart and the first",
-        DIVISIONS,
-        "> 1 and (last == 0 or colors[last] != colors[0])",
-        "> 1",
-        "round the end",
-    ),
-    (
-        "5, no color on both sides",
-        SHOWN,
-        "in product((0, 1), repeat=2) if twin in shown else ():",
-        "in ():",
-        "drawn 2",
-    ),
-    (
-        "5, first the color before, then that after",
-        SHOWN,
-        "yield (-dart - 1, following + 1)",
-        "pass",
-        "crossing-zeros",
-    ),
-    (
-        "5, the gap that the list begins in",
-        SHOWN,
-        "pairwise((*loop, loop[0]))",
-        "pairwise(loop)",
-        "crossing-zeros, turned",
-    ),
-    (
-        "5, joinable",
-        SHOWN,
-        "if color == shown[twin][late_there] and color in graph.darts[dart].colors:",
-        "if color == shown[twin][late_there]:",
-        "crack",
-    ),
-    (
-        "5, the color before",
-        SHOWN,
-        "found[dart] = met[passed - 1], met[passed % len(met)]",
-        "found[dart] = (met[passed % len(met)],) * 2",
-        "crossing-zeros",
-    ),
-    (
-        "5, the color after",
-        SHOWN,
-        "found[dart] = met[passed - 1], met[passed % len(met)]",
-        "found[dart] = (met[passed - 1],) * 2",
-        "crossing-zeros",
-    ),
-    (
-        "1, an edge of the cell with itself",
-        CODES,
-        "if not 0 <= partner < i:",
-        "if True:",
-        "drawn 4, self-edges",
-    ),
-    (
-        "1, a dart in state 1 beyond one in state 0",
-        CODES,
-        "colors = [side[1]] if side[0] == 1 else []",
-        "colors = sorted(self._cell.joinable[i])",
-        "drawn 2",
-    ),
-    (
-        "1, a dart in state 0 beyond one in state 1",
-        CODES,
-        "if (side is None or side[0] == 0) and not",
-        "if not",
-        "drawn 2",
-    ),
-    (
-        "2, blocks do not cross",
-        CODES,
-        "code.opened[: level + 1], i)",
-        "code.opened, i)",
-        "drawn 4",
-    ),
-    (
-        "2, at least two darts",
-        CODES,
-        "if len(darts) > 1 and any(len(places) == 1 for places in darts):",
-        "if False:",
-        "drawn 2",
-    ),
-    (
-        "3, joinable",
-        CODES,
-        "colors = sorted(self._cell.joinable[i]) if",
-        "colors = sorted(self._cell.colors) if",
-        "crossing-zeros",
-    ),
-    (
-        "3, one color",
-        CODES,
-        "if code.colors[own] in colors and self._follows(",
-        "if self._follows(",
-        "crossing-zeros",
-    ),
-    (
-        "3, the color across the edge",
-        CODES,
-        "colors = [side[1]] if side[0] == 1 else []",
-        "colors = sorted(self._cell.joinable[i]) if side[0] == 1 else []",
-        "drawn 2",
-    ),
-    (
-        "3, any color without a dart in state 1",
-        CODES,
-        "for color in self._cell.colors:",
-        "for color in self._cell.colors[:1]:",
-        "drawn 2",
-    ),
-    (
-        "4",
-        CODES,
-        "return (own == before or color != code.colors[before]) and self._gap(",
-        "return self._gap(",
-        "drawn 2",
-    ),
-    (
-        "4, the last dart and the first",
-        CODES,
-        "if own != 0 and color == code.colors[0]:",
-        "if False:",
-        "round the end",
-    ),
-    (
-        "5, no color on both sides",
-        ZEROS,
-        "return _satisfiable(len(shows), clauses)",
-        "return True",
-        "crossing-zeros",
-    ),
-    (
-        "5, first the color before, then that after",
-        ZEROS,
-        "clauses.append((-zero, following))",
-        "pass",
-        "crossing-zeros",
-    ),
-    (
-        "5, the gap that the list begins in",
-        ZEROS,
-        "zero_at.get((i + 1) % len(painted))",
-        "zero_at.get(i + 1)",
-        "crossing-zeros, turned",
-    ),
-    (
-        "5, joinable",
-        ZEROS,
-        "if color == other_color and color in joinable[dart]:",
-        "if color == other_color:",
-        "crack",
-    ),
-    (
-        "5, the color before",
-        CODES,
-        "shown.append((ones[passed - 1], ones[passed % len(ones)]))",
-        "shown.append((ones[passed % len(ones)],) * 2)",
-        "crossing-zeros",
-    ),
-    (
-        "5, the color after",
-        CODES,
-        "shown.append((ones[passed - 1], ones[passed % len(ones)]))",
-        "shown.append((ones[passed - 1],) * 2)",
-        "crossing-zeros",
-    ),
-    (
-        "5, either of two colors",
-        CODES,
-        "(0, before if before == after else EITHER)",
-        "(0, before)",
-        "crossing-zeros",
-    ),
-]
-
-RULES_WITH_HOLES = [
-    (
-        "1, an edge of the cell with itself",
-        DIVISIONS,
-        "if any(t is not None and states[t] != own for own, t in zip(states, twins, strict=True)):",
-        "if False:",
-        "crack",
-    ),
-    (
-        "2, at least two darts",
-        DIVISIONS,
-        "if len(parts) < 2 or min(map(len, parts)) > 1:",
-        "if True:",
-        "two and two",
-    ),
-    (
-        "2, blocks do not cross on a loop",
-        DIVISIONS,
-        "if any(a == c != b == d for a, b, c, d in combinations(held, 4)):",
-        "if False:",
-        "on two loops",
-    ),
-    (
-        "2, blocks can be drawn",
-        DIVISIONS,
-        "if one_loop or can_be_drawn(cell, made):",
-        "if True:",
-        "bands",
-    ),
-    (
-        "3, one color",
-        DIVISIONS,
-        "if ones[part[0]] == ones[dart]:",
-        "if True:",
-        "two and two",
-    ),
-    (
-        "4, on each loop",
-        DIVISIONS,
-        "if one != other and blocks[one][0] == blocks[other][0]:",
-        "if False:",
-        "on three loops",
-    ),
-    (
-        "4, blocks that no chain connects",
-        DIVISIONS,
-        "and connected[one] != connected[other]",
-        "and False",
-        "two and two, in turn",
-    ),
-    (
-        "5, a gap is one of a loop",
-        SHOWN,
-        "for loop in graph.loops[cell]:\n        for dart, following",
-        "for loop in [sum(map(tuple, graph.loops[cell]), ())]:\n        for dart, following",
-        "last and first",
-    ),
-    (
-        "5, a loop without darts in state 1 lies in any block",
-        SHOWN,
-        "[_gap_colors(loop, color_of, color) for color in every]",
-        "[_gap_colors(loop, color_of, color) for color in every[:1]]",
-        "a loop in either",
-    ),
-]
-
-SAVE_TIME = [
-    # What ends a branch that leads to no scheme, and what makes fronts look alike.
-    (
-        "a block with one dart is not complete",
-        DIVISIONS,
-        "if len(members[block]) == 1:\n                        break",
-        "pass",
-    ),
-    ("zeros of one color on both sides", SHOWN, "if pair[0] == pair[1]:", "if False:"),
-    (
-        "colors that cannot be joined are alike",
-        SHOWN,
-        "color if color in graph.darts[dart].colors else -1 for color",
-        "color for color",
-    ),
-    ("a bracket with one dart stays open", CODES, "if code.owner.count(own) == 1:", "if False:"),
-    ("room for its second dart", CODES, "if several and single > self._room[i]:", "if False:"),
-    (
-        "what solved neighbors show",
-        CODES,
-        "forced_after = False\n",
-        "return True\n        forced_after = False\n",
-    ),
-]
+SEEDS = st.integers(0, 10**6)
 
 
-def of(module: str) -> CpSatSolver | ReferenceSolver:
-    """The solver that uses a module."""
-    return ReferenceSolver() if ".dfs." in module else CpSatSolver()
+def schemes_of(instance: Instance) -> set[SchemeKey]:
+    """All that there are, each seen by the checker and none twice."""
+    options = Options(workers=2)
+    segments = solve(instance, options).segments
+    assert segments is not None
+    found = [scheme_key(d) for d in enumerate_schemes(instance, options, "cp-sat", segments)]
+    assert len(set(found)) == len(found)
+    return set(found)
 
 
-def names(table: list[Any]) -> list[str]:
-    return [f"{module.rpartition('.')[2]}: {rule}" for rule, module, *_ in table]
+@examples(12)
+@given(seed=SEEDS, darts=st.integers(3, 6), loops=st.integers(2, 3), colors=st.integers(2, 3))
+def test_against_every_division(seed: int, darts: int, loops: int, colors: int) -> None:
+    instance = holes.holed(seed, darts, loops, colors)
+    _, expected = holes.optimal_schemes(instance)
+    assert schemes_of(instance) == expected
 
 
-@pytest.mark.parametrize(("rule", "module", "old", "new", "name"), RULES, ids=names(RULES))
-def test_every_rule_is_needed(
-    rule: str, module: str, old: str, new: str, name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    assert as_defined(of(module), name)
-    change(monkeypatch, module, old, new)
-    assert not as_defined(of(module), name), rule
+@examples(6)
+@given(seed=SEEDS, islands=st.integers(1, 2))
+def test_however_loops_are_turned(seed: int, islands: int) -> None:
+    """The very same schemes, not only as many: there are no seams in them."""
+    surface = blobs(seed, size=8, colors=2, coverage=(0.8, 1.0), rim=2, islands=islands)
+    instance = decompose(surface)
+    assume(1 < len(instance.cells) < 9)
+    assert schemes_of(turned(instance, random.Random(seed))) == schemes_of(instance)
+
+
+@examples(40)
+@given(
+    labels=st.lists(st.integers(0, 3), min_size=2, max_size=7),
+    places=st.lists(st.integers(0, 2), min_size=7, max_size=7),
+)
+def test_what_can_be_drawn(labels: list[int], places: list[int]) -> None:
+    """The checker cuts cells open, the brute force looks for an embedding of genus 0."""
+    loops: list[list[int]] = [[], [], []]
+    for dart, place in zip(range(len(labels)), places, strict=False):
+        loops[place].append(dart)
+    blocks = frozenset(
+        frozenset(dart for dart, label in enumerate(labels) if label == own) for own in set(labels)
+    )
+    assume(max(map(len, blocks)) < 6)
+    expected = holes.can_be_drawn(tuple(map(tuple, loops)), blocks)
+    assert can_be_drawn([[labels[dart] for dart in loop] for loop in loops]) == expected
+
+
+def divided(instance: Instance, *blocks: list[int]) -> Division:
+    """The first cell in blocks, each in the color of its darts' other sides."""
+    color = {cell.id: cell.colors[0] for cell in instance.cells}
+    joined = set(itertools.chain(*blocks))
+    return number_segments(
+        [
+            [(color[block[0]], tuple(block)) for block in blocks],
+            *(
+                [(color[dart], (-dart,) if dart in joined else ())]
+                for dart in range(1, len(instance.cells))
+            ),
+        ]
+    )
 
 
 @pytest.mark.parametrize(
-    ("rule", "module", "old", "new", "name"), RULES_WITH_HOLES, ids=names(RULES_WITH_HOLES)
+    ("loops", "colors", "blocks", "reason"),
+    [
+        # Two bands from loop to loop, and what is between them: all in turn.
+        ([[1, 2], [3, 4]], [RED, BLUE, RED, BLUE], [[1, 3], [2, 4]], None),
+        # A closed curve between a red loop and a blue one, and between two red ones.
+        ([[1, 2], [3, 4]], [RED, RED, BLUE, BLUE], [[1, 2], [3, 4]], None),
+        ([[1, 2], [3, 4]], [RED] * 4, [[1, 2], [3, 4]], "no chain of loops connects them"),
+        # From loop to loop bands keep their order: loops run in opposite senses round them.
+        (
+            [[1, 2, 3, 4], [5, 6, 7, 8]],
+            [RED, BLUE] * 4,
+            [[1, 5], [2, 6], [3, 7], [4, 8]],
+            "cannot be drawn without crossing each other",
+        ),
+    ],
 )
-def test_every_rule_for_holes_is_needed(
-    rule: str, module: str, old: str, new: str, name: str, monkeypatch: pytest.MonkeyPatch
+def test_what_is_a_scheme(
+    loops: list[list[int]], colors: list[int], blocks: list[list[int]], reason: str | None
 ) -> None:
-    assert as_defined(CpSatSolver(), name, holed=True)
-    change(monkeypatch, module, old, new)
-    assert not as_defined(CpSatSolver(), name, holed=True), rule
-
-
-@pytest.mark.parametrize(("what", "module", "old", "new"), SAVE_TIME, ids=names(SAVE_TIME))
-def test_what_saves_time_changes_no_schemes(
-    what: str, module: str, old: str, new: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    change(monkeypatch, module, old, new)
-    assert all(as_defined(of(module), name) for name in ONE_LOOP), what
+    instance = graph(((RED, BLUE), *loops), *petal_cells(*colors))
+    report = check_scheme(instance, divided(instance, *blocks))
+    assert report.is_scheme == (reason is None)
+    assert reason is None or reason in (*report.problems, *report.not_canonical)[0]

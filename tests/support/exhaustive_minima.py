@@ -81,54 +81,6 @@ def live_darts(instance: Instance, cell: Cell) -> list[int]:
     return loops[0] if loops else []
 
 
-# --- every division, literally ------------------------------------------------------------------
-
-
-def literal_minimum(instance: Instance) -> int:
-    """The minimum over the product of all partitions and all colorings: for tiny graphs only."""
-    options = []
-    for cell in instance.cells:
-        darts = live_darts(instance, cell)
-        found: list[tuple[int, dict[int, tuple[int, int, int]]]] = []
-        for blocks in noncrossing(len(darts)):
-            blocks = blocks or ((),)
-            for colors in itertools.product(cell.colors, repeat=len(blocks)):
-                holder = {
-                    darts[i]: (cell.id, number, colors[number])
-                    for number, block in enumerate(blocks)
-                    for i in block
-                }
-                found.append((len(blocks), holder))
-        options.append(found)
-    best = len(instance.cells) * 1000
-    for chosen in itertools.product(*options):
-        holder = {dart: where for _, painted in chosen for dart, where in painted.items()}
-        joins = [
-            (one[:2], holder[-dart][:2])
-            for dart, one in holder.items()
-            if dart > 0 and one[2] == holder[-dart][2] and one[2] in instance.joinable(dart)
-        ]
-        best = min(best, sum(count for count, _ in chosen) - _forest(joins))
-    return best
-
-
-def _forest(joins: list[tuple[tuple[int, int], tuple[int, int]]]) -> int:
-    """The number of edges of a maximal forest."""
-    group: dict[tuple[int, int], set[tuple[int, int]]] = {}
-    size = 0
-    for a, b in joins:
-        ga, gb = group.setdefault(a, {a}), group.setdefault(b, {b})
-        if ga is not gb:
-            size += 1
-            ga |= gb
-            for member in gb:
-                group[member] = ga
-    return size
-
-
-# --- a sweep over cells -------------------------------------------------------------------------
-
-
 @dataclass(frozen=True)
 class Local:
     """One way to paint one cell, as the sweep needs it.

@@ -11,6 +11,14 @@ from reasons import Reason
 from world import PAIRS, World
 
 from cellcolor.arrays import Array
+from cellcolor.frontend.arm.kinematics import (
+    forward,
+    gravity_torques,
+    manipulability,
+    static_torques,
+    task_determinant,
+    tip_jacobian,
+)
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.setup import Setup
 
@@ -37,6 +45,48 @@ def set_distance(first: Array, second: Array) -> float:
         return 0.0
     gap = wrapped(first[:, None] - second[None]).max(axis=2)
     return float(max(gap.min(axis=0).max(), gap.min(axis=1).max()))
+
+
+def kinematics_apart(robot: Robot, joints: Array, torques: bool = True) -> float:
+    """The largest difference from Pinocchio in poses, Jacobian, torques and both measures.
+
+    Args:
+        torques: whether those that gravity and a push of 20 N need are compared as well.
+    """
+    gravity, task, poses = np.array([0.3, -1.0, -9.81]), robot.task, forward(robot, joints)
+    linear, angular = tip_jacobian(poses)
+    volume = manipulability(linear, task)
+    determinant = task_determinant(linear, angular, poses.tool_axis, task)
+    gravity_alone = gravity_torques(robot, poses, gravity)
+    pressed = static_torques(robot, poses, linear, gravity, 20.0)
+    model, data = robot.model, robot.model.createData()
+    model.gravity.linear = gravity
+    tip, around = model.getFrameId("tool_tip"), pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+    moved = [0, 1, 2] if task.lengths == 3 else [0, 1]
+    rows = [*moved, *([3, 4] if task.direction else []), *([5] if task.turn else [])]
+    worst = [0.0]
+    for row, q in enumerate(joints):
+        jacobian = pin.computeFrameJacobian(model, data, q, tip, around)
+        pin.framesForwardKinematics(model, data, q)
+        there = data.oMf[tip]
+        # The directions that a task asks for are those of the tool's own frame.
+        own = np.vstack([jacobian[:3], there.rotation.T @ jacobian[3:]])[:, : task.joints]
+        pairs = [
+            (poses.tip[row], there.translation),
+            (poses.tool_axis[row], there.rotation[:, 2]),
+            (np.vstack([linear[row], angular[row]]), jacobian),
+            (volume[row], np.linalg.svd(own[moved], compute_uv=False).prod()),
+            (determinant[row], abs(np.linalg.det(own[rows]))),
+        ]
+        if torques:
+            still = pin.computeGeneralizedGravity(model, data, q)
+            push = jacobian[:3].T @ (20.0 * there.rotation[:, 2])
+            pairs += [
+                (gravity_alone[row], still),
+                (pressed[row], still + push),
+            ]
+        worst += [float(np.abs(ours - theirs).max()) for ours, theirs in pairs]
+    return max(worst)
 
 
 def arm_reason(robot: Robot, setup: Setup, q: Array) -> Reason:

@@ -68,12 +68,6 @@ def mirrored(instance: Instance) -> Instance:
     return replace(instance, cells=cells, edges=edges, surface=None)
 
 
-def turned_loop(loop: tuple[int, ...], rng: random.Random) -> tuple[int, ...]:
-    """The same loop, begun at another dart."""
-    start = rng.randrange(len(loop))
-    return loop[start:] + loop[:start]
-
-
 Loop = tuple[int, int]  # (cell, number of the loop in it)
 
 

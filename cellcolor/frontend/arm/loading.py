@@ -21,8 +21,8 @@ from cellcolor.frontend.arm.assembly import (
     without,
 )
 from cellcolor.frontend.arm.body import Body, Shapes, place_shapes
+from cellcolor.frontend.arm.notes import notes_on_tool
 from cellcolor.frontend.arm.robot import FollowingFrame, Robot
-from cellcolor.frontend.arm.tool_sense import notes_on_tool
 from cellcolor.frontend.arm.urdf import (
     PRISMATIC,
     Follower,

@@ -18,10 +18,9 @@ import pinocchio as pin
 from scipy.spatial.transform import Rotation
 
 from cellcolor.arrays import Array, Mask
-from cellcolor.frontend.arm.body import Body
+from cellcolor.frontend.arm.body import Body, Shape
 from cellcolor.frontend.arm.kinematics import forward, frames_along
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.shape import Shape
 
 Between = tuple[Body, Body, float]
 """Two bodies, and how near (m) they must not come."""

@@ -13,7 +13,7 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
-from cellcolor.frontend.arm.shape import Kind, Shape
+from cellcolor.frontend.arm.body import Kind, Shape
 from cellcolor.frontend.parts.mesh_file import load_mesh
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import grid_mesh
@@ -66,7 +66,7 @@ class MeshObstacle(Obstacle):
 class Primitive(Obstacle):
     """A filled shape that is centered on its position; its own keys are its sizes, in m.
 
-    See :class:`~cellcolor.frontend.arm.shape.Shape`.
+    See :class:`~cellcolor.frontend.arm.body.Shape`.
     """
 
     kind: Kind

@@ -1,10 +1,15 @@
-"""The faces of an object to be covered; the arm must only not hit the others."""
+"""The faces of an object to be covered, and which side of a part is its outside.
+
+The arm must only not hit the faces that are not covered. Sharp edges part the sides of a shell and
+the regions that can be chosen.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Annotated, Self
 
+import igl
 import numpy as np
 from pydantic import Field, FiniteFloat, field_validator, model_validator
 
@@ -15,10 +20,97 @@ from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
 from cellcolor.frontend.parts.mending import in_words
 from cellcolor.frontend.parts.mesh import mesh_surface
-from cellcolor.frontend.parts.sides import between_sharp
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.tables import IN_RADIANS, Position, Table, Vector
 from cellcolor.mesh.triangle_mesh import TriangleMesh
+
+SHARP_RAD = 1.0
+"""Between the normals of two faces: the sides of a shell end at edges from there on."""
+
+_THIN = 0.03  # of the part's size; a side so near behind another makes a shell
+_MOSTLY = 0.6  # of the area, for the part to be one
+_POINTS = 100  # of the area that are looked at
+_ALIKE = 0.5  # of the larger side's area, at least, has the other one
+
+
+def whole_mesh(surface: Surface) -> TriangleMesh:
+    """Its mesh before edges were halved."""
+    return surface.mesh if surface.divided is None else surface.divided[0]
+
+
+def thickness(mesh: TriangleMesh) -> float | None:
+    """Of a shell, the median distance in m from one side to the other behind it; None of others."""
+    size = float(np.linalg.norm(np.ptp(mesh.points, axis=0)))
+    inward = -np.nan_to_num(mesh.triangle_normals)
+    middles = mesh.points[mesh.corners].mean(axis=1)
+    within = mesh.lengths[mesh.edge_of_side].max(axis=1) + _THIN * size
+    behind = np.full(_POINTS, np.inf)
+    for row, (point, face) in enumerate(zip(*spread(mesh, _POINTS), strict=True)):
+        # What lies behind has its own outside on the other side.
+        near = np.linalg.norm(middles - point, axis=1) <= within
+        others = mesh.corners[near & (inward @ inward[face] < -0.5)]
+        hits = igl.ray_mesh_intersect(point, inward[face], mesh.points, others)
+        behind[row] = hits[0][1] if hits else np.inf
+    found = behind <= _THIN * size
+    return float(np.median(behind[found])) if found.mean() >= _MOSTLY else None
+
+
+def spread(mesh: TriangleMesh, count: int) -> tuple[Array, Index]:
+    """Points (k, 3) all over the surface, each for as much area, and the face (k,) of each."""
+    corners, areas = mesh.points[mesh.corners], mesh.areas
+    wanted = (np.arange(count) + 0.5) / count * areas.sum()
+    face = np.minimum(np.searchsorted(np.cumsum(areas), wanted), len(areas) - 1)
+    u, v = np.random.default_rng(0).random((2, count))
+    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+    weights = np.stack([1 - u - v, u, v], axis=1)
+    return np.einsum("ij,ijk->ik", weights, corners[face]), face
+
+
+def between_sharp(mesh: TriangleMesh, sharp_rad: float) -> Index:
+    """The number of the piece (m,) that each face is in; sharp edges part them."""
+    edges, sides = mesh.pairs
+    sharp = np.zeros(len(mesh.edges), dtype=bool)
+    sharp[edges] = angles_between(*(mesh.triangle_normals[s // 3] for s in sides.T)) > sharp_rad
+    return mesh.parts(sharp)
+
+
+def pieces(mesh: TriangleMesh) -> list[Mask]:
+    """The faces (m,) between sharp edges, the piece with the largest area first."""
+    part = between_sharp(mesh, SHARP_RAD)
+    order = np.argsort(-np.bincount(part, mesh.areas), kind="stable")
+    return [np.asarray(part == number) for number in order[:2]]
+
+
+def shell_sides(mesh: TriangleMesh) -> list[Mask] | None:
+    """The two sides (m,) of a shell, the larger one, its outer, first; None if they are not two."""
+    found = pieces(mesh)
+    if len(found) < 2 or mesh.areas[found[1]].sum() < _ALIKE * mesh.areas[found[0]].sum():
+        return None
+    return found
+
+
+def facing(mesh: TriangleMesh, faces: Mask | slice = slice(None)) -> Array:
+    """The mean of the normals (3,): of length 1 if all point alike, 0 if every way."""
+    area = mesh.areas[faces].sum()
+    return np.asarray(mesh.area_vectors[faces].sum(axis=0) / 2 / area)
+
+
+def inner_point(mesh: TriangleMesh, faces: Mask) -> Array:
+    """The middle (3,) of the largest of some faces."""
+    own: Index = np.flatnonzero(faces)
+    return np.asarray(mesh.points[mesh.corners[own[np.argmax(mesh.areas[own])]]].mean(axis=0))
+
+
+def note_on_shell(surface: Surface) -> tuple[str, ...]:
+    """A sentence if a tool has to cover both sides of something thin."""
+    thick = thickness(whole_mesh(surface))
+    if thick is None:
+        return ()
+    return (
+        f"the part is a shell, {1e3 * thick:.2g} mm thick, and both its sides are to be covered: "
+        "[cover] chooses one (docs/parts.md, patches)",
+    )
+
 
 Angle = Annotated[FiniteFloat, Field(gt=0, le=float(np.pi)), IN_RADIANS]
 

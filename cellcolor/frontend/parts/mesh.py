@@ -25,9 +25,7 @@ from cellcolor.frontend.parts.mending import (
     turned,
     used,
 )
-from cellcolor.frontend.parts.part import Part
-from cellcolor.frontend.parts.surface import Faces, Surface, refine
-from cellcolor.frontend.sizes import check_vertices
+from cellcolor.frontend.parts.surface import Faces, Part, Surface, check_vertices, refine
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 _FARTHEST, _SMALLEST = 1e6, 1e-6  # m

@@ -26,8 +26,7 @@ from cellcolor.frontend.parts.mending import (
 )
 from cellcolor.frontend.parts.mesh import check_corners, mesh_surface
 from cellcolor.frontend.parts.remeshing import Deviation, length_for, remeshed
-from cellcolor.frontend.parts.surface import Faces
-from cellcolor.frontend.sizes import MOST_VERTICES
+from cellcolor.frontend.parts.surface import MOST_VERTICES, Faces
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 MOST_FACES = 3_000_000  # a kilobyte each

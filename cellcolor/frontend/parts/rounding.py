@@ -15,10 +15,11 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, Mask, numbered, unit
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import InputError
 from cellcolor.frontend.parts.surface import SHARP, Surface
-from cellcolor.frontend.sizes import check_rounding
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
+_MOST_AROUND = 200_000_000  # faces around vertices; some microseconds each
 _ROWS = 1000  # vertices that are rounded together
 _AROUND = 25_000  # faces around vertices that are looked at together
 _SAME = 1e-9  # of the radius; a ball that is smaller by less is no smaller
@@ -43,7 +44,13 @@ def rounded(surface: Surface, radius: float, deadline: Deadline = NEVER) -> Surf
     around = _Around.of(surface)
     asked = np.flatnonzero((_rims(surface) < radius) & around.is_bent(radius))
     size = float(around.mesh.areas.mean())
-    check_rounding(len(asked), min(np.pi * radius**2 / size, len(around.mesh.corners)))
+    within = min(np.pi * radius**2 / size, len(around.mesh.corners))
+    if len(asked) * within > _MOST_AROUND:
+        message = (
+            f"holds about {within:,.0f} triangles, for each of {len(asked):,} vertices; at most "
+            f"{_MOST_AROUND:,} are looked at: a smaller radius, or larger triangles"
+        )
+        raise InputError(None, "task.edge_radius_m", message)
     normals = surface.normals.copy()
     parts = [asked[first : first + _ROWS] for first in range(0, len(asked), _ROWS)]
     while parts:

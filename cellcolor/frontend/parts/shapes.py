@@ -10,9 +10,7 @@ from pydantic import Field, FiniteFloat
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.frontend.parts.part import Part
-from cellcolor.frontend.parts.surface import Faces, Surface
-from cellcolor.frontend.sizes import MOST_VERTICES, check_vertices
+from cellcolor.frontend.parts.surface import MOST_VERTICES, Faces, Part, Surface, check_vertices
 from cellcolor.frontend.tables import IN_RADIANS, Length
 
 

@@ -1,21 +1,49 @@
-"""The surface to be covered: a triangle mesh with normals at its vertices, and its refinement."""
+"""The surface to be covered, a triangle mesh with normals at its vertices, and the parts that have
+one: the kinds of ``[object]`` in a scene.
+
+A build keeps some kilobytes for each vertex. What a mesh may have is chosen so that 4 GiB are
+enough, and asked before memory is spent; units read wrongly are the usual way past it.
+"""
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, angles_between
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import InputError
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
-from cellcolor.frontend.sizes import check_refinement, check_vertices
+from cellcolor.frontend.tables import Registry, Table
 from cellcolor.mesh.dividing import halved
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 Faces = NDArray[np.int64]
+
+MOST_VERTICES = 250_000
+
+
+def check_vertices(count: int, field: str | None = None) -> None:
+    """Refuse a mesh with too many vertices."""
+    if count > MOST_VERTICES:
+        raise InputError(None, field, f"has {count:,} vertices, at most {MOST_VERTICES:,} fit")
+
+
+def check_faces(count: int) -> None:
+    """Refuse a mesh with more faces than one with as many vertices as fit can have.
+
+    It has two for each vertex, and a few more if it has handles.
+    """
+    if count > 3 * MOST_VERTICES:
+        raise InputError(
+            None, "faces", f"there are {count:,}, at most {MOST_VERTICES:,} vertices fit"
+        )
+
 
 SHARP = float(np.radians(30.0))
 """Between the normals of two faces, rad; an edge is sharp from there on."""
@@ -107,7 +135,17 @@ def refine(
     Raises:
         InputError: there would be too many vertices; that is checked in advance.
     """
-    check_refinement(len(mesh.points), mesh.lengths, float(mesh.areas.sum()), longest)
+    # An edge is cut into as many parts as fit at least. A triangle has no more area than the
+    # equilateral one on its longest side, and there are about two triangles for each vertex.
+    on_edges = len(mesh.points) + float(np.ceil(mesh.lengths / longest - 1).sum())
+    needed = max(on_edges, float(mesh.areas.sum()) / (np.sqrt(3) / 4 * longest**2) / 2)
+    if needed > MOST_VERTICES:
+        raise InputError(
+            None,
+            "max_edge_m",
+            f"needs about {needed:.2g} vertices or more, at most {MOST_VERTICES:,} fit: "
+            "is it too small, or meters_per_unit too large?",
+        )
     lies_in = np.arange(len(mesh.corners))
     while True:
         deadline.check()
@@ -117,3 +155,34 @@ def refine(
         check_vertices(len(mesh.points) + int(marked.sum()), "max_edge_m")
         mesh, of = halved(mesh, marked)
         lies_in = lies_in[of]
+
+
+class Part(Table):
+    """An object in its own frame: the keys of its table, and the surface that they describe.
+
+    A kind that files can name has a key ``kind`` with its name, and is registered in ``PARTS`` or
+    by an entry point of the group ``cellcolor.parts``.
+    """
+
+    @abstractmethod
+    def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:
+        """The part's surface in its own frame.
+
+        Args:
+            folder: what the names of files in the table are relative to.
+
+        Raises:
+            InputError: there is no such surface.
+        """
+
+
+PARTS: Registry[Part] = Registry(
+    "cellcolor.parts",
+    Part,  # type: ignore[type-abstract]
+    {
+        "spherical-cap": "cellcolor.frontend.parts.shapes:CapObject",
+        "pipe": "cellcolor.frontend.parts.shapes:PipeObject",
+        "rectangle": "cellcolor.frontend.parts.shapes:RectangleObject",
+        "mesh": "cellcolor.frontend.parts.mesh_file:MeshObject",
+    },
+)

@@ -37,7 +37,7 @@ from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.prepared_arm import PreparedArm
-from cellcolor.frontend.reach.tracking import Solutions, Tracker
+from cellcolor.frontend.reach.smooth import Solutions, Tracker
 from cellcolor.frontend.reach.validity import Judge
 from cellcolor.memory import chunks
 

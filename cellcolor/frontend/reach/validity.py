@@ -12,10 +12,11 @@ from cellcolor.arrays import Array, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.movement import tracked_points, tracked_steps
+from cellcolor.frontend.contact.tip import tracked_points, tracked_steps
 from cellcolor.frontend.reach.validity_tests import (
     STANDARD_TESTS,
     Postures,
+    StandardTest,
     ValidityTest,
     Workplace,
 )
@@ -37,7 +38,7 @@ class Verdicts:
         reasons: (...) uint8 codes, which index ``reason_names``.
         determinants: (...) task determinant in m^3, NaN without solution.
         tracked: (points, ..., 3) of the bodies that can move, in the world, m, see
-            :func:`~cellcolor.frontend.contact.movement.tracked_points`; NaN as above.
+            :func:`~cellcolor.frontend.contact.tip.tracked_points`; NaN as above.
         reason_names: valid, no solution, and the tests in the order of testing.
     """
 
@@ -92,7 +93,9 @@ class Judge:
         self.reason_names = tuple(dict.fromkeys([*STANDARD_REASONS, *(t.name for t in added)]))
         on = workplace.setup.constraints
         standard = (test for test in STANDARD_TESTS if getattr(on, test.constraint))
-        self._tests = tuple(test for test in (*standard, *added) if test.name not in left_out)
+        self._tests: tuple[StandardTest | ValidityTest, ...] = tuple(
+            test for test in (*standard, *added) if test.name not in left_out
+        )
         margins = workplace.setup.margins
         least = min(margins.to_object_m, margins.to_obstacles_m, margins.to_ground_m)
         self.tracked_steps = tracked_steps(workplace.robot, least, margins.between_links_m)

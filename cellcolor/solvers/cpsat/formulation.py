@@ -18,9 +18,8 @@ from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, add_variables
 from cellcolor.solvers.cpsat.dart_graph import DartGraph
-from cellcolor.solvers.cpsat.drawing import sector_colors
 from cellcolor.solvers.cpsat.painting import Painting
-from cellcolor.solvers.cpsat.sectors import painting_of_sectors, sector_graph
+from cellcolor.solvers.cpsat.sectors import painting_of_sectors, sector_colors, sector_graph
 
 Pair = tuple[int, int]
 

@@ -10,7 +10,7 @@ from cellcolor.data.solution import Division, scheme_key
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError, TooLarge
 from cellcolor.solvers.bounds.cover import color_regions
-from cellcolor.solvers.cpsat.cell_divisions import Blocks
+from cellcolor.solvers.cpsat.cell_divisions import Blocks, Planarity
 from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph
 from cellcolor.solvers.cpsat.frontier import Frontier
 from cellcolor.solvers.cpsat.painting import (
@@ -20,7 +20,6 @@ from cellcolor.solvers.cpsat.painting import (
     moved,
     painting_of,
 )
-from cellcolor.solvers.cpsat.planarity import Planarity
 from cellcolor.solvers.interface import Options
 
 _COUNTING = 1 / 2

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from cellcolor.data.cells_and_edges import DartName, strand_of
-from cellcolor.data.solution import Division, number_segments
-from cellcolor.solvers.cpsat.dart_graph import DartGraph
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Division, Seam, number_segments
+from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph
 from cellcolor.union_find import UnionFind
 
 
@@ -227,3 +228,22 @@ class _Cell:
         darts = (dart for loop in self._loops for dart in loop)
         found = {id(b): b for dart in darts if (b := self.block_of.get(dart)) is not None}
         return list(found.values()) or [self.own]
+
+
+def joined(
+    instance: Instance, division: Division, seams: Sequence[Seam] = (), strands: int = 1
+) -> Division:
+    """The scheme of a division: edges between equal joinable colors are joined.
+
+    A division in which some edge in state 0 has to show one joinable color on both sides is refused
+    by the checker (docs/semantics.md, section 3, rule 5). Joining these edges repairs it. Sub-cells
+    of equal color without anything between them become one, and what is superfluous goes; there
+    are no more segments than before (section 8).
+
+    Args:
+        division: legal otherwise; cells may be painted whole, without any joined edge.
+        seams: those that its darts refer to.
+        strands: for each live edge.
+    """
+    graph = dart_graph(instance, dict.fromkeys(instance.live_edges, strands), seams)
+    return division_of(graph, canonical(graph, painting_of(graph, division)), strands)

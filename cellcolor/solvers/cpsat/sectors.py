@@ -3,7 +3,8 @@
 A division of the cells is a coloring of the sectors, and cutting paths are the borders between
 colors. They cannot cross, because the graph is drawn in the plane of each cell. Segments are the
 connected sets of sectors of one color. The model (``formulation``) and local search both work on
-this graph.
+this graph. Each division can be drawn on it in one way: each sub-cell takes the sectors of its
+darts, and connects them in the ring of its nesting height (docs/formulation.md, "Rings").
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -110,9 +112,6 @@ def sector_graph(
 ) -> SectorGraph:
     """Cut every cell into sectors, with as many rings as every scheme can be drawn in.
 
-    Let m be the length of the longest chain of nested chords between two darts of a common color.
-    Then (m - 1) / 2 rings, rounded up, are enough (docs/formulation.md).
-
     Args:
         most_rings: no cell gets more rings; some schemes may then have no room.
         most_colors: of all sectors together, each in any color of its cell.
@@ -182,6 +181,9 @@ def _add_rings(made: SectorGraph, cell: int, outward: Sequence[tuple[int, int] |
 def _enough_rings(colors: Sequence[frozenset[int]], most: int) -> int:
     """How many rings every scheme can be drawn in, or ``most`` if these are more.
 
+    With m nested chords between darts of a common color at most, they are (m - 1) / 2, rounded up
+    (docs/formulation.md).
+
     Args:
         colors: those joinable at each dart of a cyclic list.
     """
@@ -191,12 +193,10 @@ def _enough_rings(colors: Sequence[frozenset[int]], most: int) -> int:
 
 
 def _longest_chain(colors: Sequence[frozenset[int]], enough: int) -> int:
-    """The most chords between darts of a common color of which each separates its neighbors.
+    """The most nested chords between darts of a common color; it ends where these are enough.
 
-    The search ends where there are enough of them.
-
-    Chords of a chain are nested in some stretch of the cyclic list. So ``most[first]`` is the
-    length of the longest chain of nested chords in the stretch of ``size`` darts from the first.
+    They are nested in some stretch of the cyclic list: ``most[first]`` is the length of the longest
+    chain in the stretch of ``size`` darts from the first.
     """
     count = len(colors)
     share = np.array([[not one.isdisjoint(other) for other in colors] for one in colors])
@@ -236,3 +236,82 @@ def painting_of_sectors(sectors: SectorGraph, colors: Sequence[int]) -> Painting
         if color == colors[beyond] and color in dart.colors:
             block_of[node].darts.add(number)
     return [[block for block in cell if block.darts] or cell[:1] for cell in painting]
+
+
+def sector_colors(sectors: SectorGraph, painting: Painting) -> list[int]:
+    """The color of each sector in a canonical painting of the same graph.
+
+    Where a cell has fewer rings than its sub-cells need, those that are nested too deeply come
+    apart.
+    """
+    colors: list[int] = []
+    for cell, blocks in enumerate(painting):
+        rings, shown = sectors.rings[cell], _shown(sectors.graph.lists[cell], blocks)
+        if not rings or len({id(block) for block in shown}) < 2:
+            inner = shown[0] if shown else blocks[0]
+            colors += [inner.color] * len(sectors.nodes[cell])
+        else:
+            rows, center = _rows(shown, rings)
+            colors += [block.color for row in rows for block in row]
+            colors.append(center.color)
+    return colors
+
+
+def _shown(darts: Sequence[int], blocks: Sequence[Block]) -> list[Block]:
+    """The block at each dart of a cyclic list; a dart in state 0 shows the one before it."""
+    block_of = {dart: block for block in blocks for dart in block.darts}
+    shown = next((block_of[dart] for dart in reversed(darts) if dart in block_of), blocks[0])
+    found = []
+    for dart in darts:
+        shown = block_of.get(dart, shown)
+        found.append(shown)
+    return found
+
+
+def _rows(shown: Sequence[Block], rings: int) -> tuple[list[list[Block]], Block]:
+    """The block at each place of each ring, and at the center."""
+    best: tuple[tuple[int, int], list[list[Block]], Block] | None = None
+    starts = [own for before, own in pairwise([shown[-1], *shown]) if own is not before]
+    for root in {id(block): block for block in shown}.values():
+        above, height = _nesting(shown, root)
+        deepest = max((height[id(b)] for b in shown if b is not root), default=0)
+        order = deepest, -sum(own is root for own in starts)
+        if best is not None and best[0] <= order:
+            continue
+        rows = []
+        row = list(shown)
+        for ring in range(rings):
+            row = [
+                above[id(block)] if block is not root and height[id(block)] < ring else block
+                for block in row
+            ]
+            rows.append(row)
+        best = order, rows, root
+    assert best is not None
+    return best[1], best[2]
+
+
+def _nesting(shown: Sequence[Block], root: Block) -> tuple[dict[int, Block], dict[int, int]]:
+    """For each block the one around it, seen from a root, and how deeply others are nested in it.
+
+    Blocks do not cross, so those that are open form a stack.
+    """
+    start = next(place for place, block in enumerate(shown) if block is root)
+    turned = [*shown[start:], *shown[:start]]
+    last = {id(block): place for place, block in enumerate(turned)}
+    last[id(root)] = len(turned)
+    stack: list[Block] = []
+    above: dict[int, Block] = {}
+    height: dict[int, int] = {}
+    for place, block in enumerate(turned):
+        while stack and last[id(stack[-1])] < place:
+            done = stack.pop()
+            height[id(stack[-1])] = max(height[id(stack[-1])], height[id(done)] + 1)
+        if id(block) not in height:
+            height[id(block)] = 0
+            above[id(block)] = stack[-1] if stack else root
+            stack.append(block)
+    while len(stack) > 1:
+        done = stack.pop()
+        height[id(stack[-1])] = max(height[id(stack[-1])], height[id(done)] + 1)
+    return above, height

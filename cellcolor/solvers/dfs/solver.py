@@ -10,9 +10,8 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, number_segments
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
-from cellcolor.solvers.dfs.cover import CoverSearch
 from cellcolor.solvers.dfs.graph import Graph
-from cellcolor.solvers.dfs.search import DepthFirstSearch, Painting
+from cellcolor.solvers.dfs.search import CoverSearch, DepthFirstSearch, Painting
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 
 _Blocks = dict[int, list[tuple[int, list[DartName]]]]

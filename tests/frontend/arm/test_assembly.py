@@ -140,33 +140,6 @@ def test_continuous_joints_have_no_limits() -> None:
     assert forward(robot, joints).tip == pytest.approx(forward(load(), joints).tip, abs=1e-12)
 
 
-FAULTS = {
-    "effort 0": (r'effort="150"', 'effort="0"', "joint[shoulder_pan_joint].limit.effort"),
-    "no effort": (r' effort="150"', "", "joint[shoulder_pan_joint].limit"),
-    "no inertial": (
-        r'(<link name="forearm_link">\s*)<inertial>.*?</inertial>',
-        r"\1",
-        "link[forearm_link].inertial",
-    ),
-    "no mass": (r'<mass value="2.33"/>', '<mass value="0"/>', "link[forearm_link].inertial.mass"),
-}
-
-
-@pytest.mark.parametrize("fault", FAULTS)
-def test_without_masses_and_efforts_the_force_has_to_be_left_out(fault: str) -> None:
-    pattern, replacement, field = FAULTS[fault]
-    arm = arm_with(pattern, replacement)
-    with pytest.raises(InputError, match=r"force = false under \[constraints\]") as caught:
-        load(arm)
-    assert (caught.value.file, caught.value.field) == ("arm.urdf", field)
-    assert load(arm, force=False).joints == 6
-
-
-def test_what_nothing_moves_needs_no_mass() -> None:
-    arm = arm_with(r'(<link name="base_link">\s*)<inertial>.*?</inertial>', r"\1")
-    assert load(arm).mass.tolist() == load().mass.tolist()
-
-
 @given(position=st.tuples(*[st.floats(-0.5, 0.5)] * 3), rpy=st.tuples(*[st.floats(-3.1, 3.1)] * 3))
 def test_a_tool_is_where_it_is_mounted(
     position: tuple[float, float, float], rpy: tuple[float, float, float]

@@ -8,22 +8,13 @@ import numpy as np
 import pytest
 from arm_plates import plate
 from independent import wrapped
-from solution_sets import Arm, from_many_starts
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.arm.calibrated import (
-    Axes,
-    NearIdeal,
-    both_sides_of_folds,
-    idealized,
-    missing,
-)
 from cellcolor.frontend.arm.eaik import EaikKinematics
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
-from cellcolor.frontend.arm.newton import nearest
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import BRANCHES, UrKinematics
 from cellcolor.frontend.setup import RobotFiles
@@ -70,42 +61,6 @@ def test_no_solution_is_lost_and_all_are_exact(kinematics: str, name: str, scale
     near = np.where(np.isnan(found), np.inf, wrapped(found - q[:, None]))[:, :, :5].max(axis=2)
     regular = volumes(robot, q) > (1e-3 if scale > 1 else 1e-4)
     assert regular.sum() > 850 and near.min(axis=1)[regular].max() < 1e-6
-
-
-@pytest.mark.parametrize(("kinematics", "name"), ARMS)
-def test_nothing_else_is_found_from_many_other_starts(kinematics: str, name: str) -> None:
-    one = Arm(*family(kinematics, calibrated.urdf(name)))
-    q = np.random.default_rng(4).uniform(-np.pi, np.pi, (12, 6))
-    poses = forward(one.robot, q)
-    others = from_many_starts(one.robot, poses.tip, poses.tool_axis, 150, 4)
-    assert one.held_against(others, q).different == 0
-
-
-@pytest.mark.parametrize(("kinematics", "name"), ARMS)
-def test_solutions_of_either_sign_are_equally_many(kinematics: str, name: str) -> None:
-    robot, arm = family(kinematics, calibrated.urdf(name))
-    poses = forward(robot, np.random.default_rng(6).uniform(-np.pi, np.pi, (1000, 6)))
-    found = arm.solve(poses.tip, poses.tool_axis)
-    # But for a few next to a singularity.
-    assert np.count_nonzero(missing(robot, found)) <= 5
-    # One taken away is missed.
-    first = np.argmin(np.isnan(found[:, :, 0]), axis=1)
-    found[np.arange(1000), first] = np.nan
-    assert np.count_nonzero(missing(robot, found)) >= 990
-
-
-@pytest.mark.parametrize(("kinematics", "name"), ARMS)
-def test_a_branch_alone_is_the_same_as_among_all(kinematics: str, name: str) -> None:
-    robot, arm = family(kinematics, calibrated.urdf(name))
-    random = np.random.default_rng(7)
-    poses = forward(robot, random.uniform(-np.pi, np.pi, (300, 6)))
-    branches = random.integers(0, 8, 300)
-    every = arm.solve(poses.tip, poses.tool_axis)[np.arange(300), branches]
-    alone = arm.solve(poses.tip, poses.tool_axis, branches)
-    assert alone.shape == (300, 1, 6)
-    assert (np.isnan(alone[:, 0]) == np.isnan(every)).all()
-    regular = volumes(robot, np.nan_to_num(every)) > 1e-4
-    assert np.nanmax(wrapped(alone[:, 0] - every)[regular]) < 1e-6
 
 
 def test_names_are_those_of_the_ideal_arm() -> None:
@@ -156,54 +111,3 @@ def test_frames_far_out_on_nearly_parallel_axes_say_nothing() -> None:
     first, second = (arm.solve(poses.tip, poses.tool_axis) for _, arm in arms)
     assert np.nanmax(wrapped(first - second)) < 1e-6
     assert (np.isnan(first) == np.isnan(second)).mean() > 0.999
-
-
-def test_the_ideal_axes_are_parallel_and_meet() -> None:
-    robot = dh_arms.robot(calibrated.urdf("kr6"))
-    poses = forward(robot, np.zeros((1, 6)))
-    axes = Axes(poses.axis[0], poses.origin[0, 1:])
-    ideal = idealized(axes, 0.01)
-    assert np.allclose(ideal.directions[1], ideal.directions[2], atol=1e-15)
-    # The wrist's three axes go through one point.
-    for k in (3, 4):
-        apart = np.cross(ideal.points[5] - ideal.points[k], ideal.directions[k])
-        assert np.linalg.norm(apart) < 1e-12
-    angle, distance = ideal.off(axes)
-    assert 1e-4 < angle < 5e-3 and 1e-5 < distance < 5e-3
-
-
-def test_both_sides_of_a_fold_are_tried() -> None:
-    robot = dh_arms.robot(dh_arms.urdf("kr6"))
-    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (2, 1, 6))
-    q[0, 0, 4] = 0.0  # the wrist is aligned
-    q[1, 0] = np.nan
-    tried = both_sides_of_folds(robot, q)
-    assert tried.shape == (2, 3, 6) and np.isnan(tried[1]).all()
-    sides = tried[0, 1:] - tried[0, 0]
-    assert np.allclose(np.linalg.norm(sides, axis=1), 0.1) and np.allclose(sides[0], -sides[1])
-
-
-class Given:
-    """Signs that are told which name and which determinant each solution has."""
-
-    def branches(self, _: Robot, solutions: Array) -> tuple[Array, Array]:
-        return np.array([2, 2, 2, 6, 2])[: len(solutions)], np.array([0.2, 0.3, 0.1, 0.5, 0.2])
-
-
-def test_two_of_the_same_signs_have_names_as_long_as_there_are_any() -> None:
-    """Three by the name 2, and one by 6; the last is the first one again."""
-    robot = dh_arms.robot(dh_arms.urdf("ur5e"))
-    solutions = np.outer(np.arange(1.0, 6.0), np.full(6, 0.1))
-    solutions[4] = solutions[0] + 2 * np.pi
-    arm = NearIdeal(robot=robot, closed_form=lambda *_: solutions[None], off=(0.0, 0.0))
-    (named,) = arm.named(solutions[None], Given())  # type: ignore[arg-type]
-    assert np.flatnonzero(~np.isnan(named[:, 0])).tolist() == [1, 2, 6]
-    # The largest determinant has the name, the next one that of the other elbow and wrist.
-    assert (named[[2, 1, 6]] == solutions[[1, 0, 3]]).all()
-
-
-def test_the_nearest_is_told_modulo_full_circles() -> None:
-    solutions = np.array([[[0.0] * 6, [1.0] * 6, [np.nan] * 6]])
-    others = np.array([[[2 * np.pi + 0.1] * 5 + [3.0], [np.nan] * 6]])
-    assert np.allclose(nearest(solutions, others), [[0.1, 0.9, np.inf]])
-    assert np.isinf(nearest(solutions, others[:, 1:])).all()

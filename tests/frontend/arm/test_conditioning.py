@@ -9,13 +9,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from reasons import Reason
-from scipy.optimize import minimize
 from shipped import ROBOTS
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.ur import UrGeometry
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
 
@@ -76,26 +72,6 @@ def test_shares_mean_the_same_for_every_size(scene: Varied) -> None:
     for other in found.values():
         # Exact but for what lies within rounding of a limit.
         assert np.mean(other == found["UR5"]) > 0.999
-
-
-def test_cubic_meters_do_not(scene: Varied) -> None:
-    """What is fine for a UR5 fails on a UR3, and a UR10 passes too easily."""
-    small, middle, large = (
-        conditioned(reasons(scene, size, shares=False)) for size in ARMS.values()
-    )
-    assert small > middle + 100 and middle >= large
-
-
-def test_reach_is_what_no_configuration_exceeds(robot: Robot, geometry: UrGeometry) -> None:
-    def distance(angles: np.ndarray) -> np.ndarray:
-        tip = forward(robot, angles.reshape(-1, 6)).tip
-        return np.linalg.norm(tip - geometry.shoulder, axis=1)
-
-    angles = np.random.default_rng(2).uniform(-np.pi, np.pi, (20_000, 6))
-    far = distance(angles)
-    best = minimize(lambda q: -distance(q)[0], angles[np.argmax(far)])
-    assert far.max() <= geometry.arm_reach
-    assert -best.fun == pytest.approx(geometry.arm_reach, abs=1e-6)
 
 
 @pytest.mark.parametrize("name", SHARES)

@@ -10,8 +10,8 @@ from shipped import ROBOTS, TOP
 
 from cellcolor.errors import InputError
 from cellcolor.frontend import Scene
-from cellcolor.frontend.arm.far_shapes import notes_on_shapes
 from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.notes import notes_on_shapes
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.prepared import prepare
 

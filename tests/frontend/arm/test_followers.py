@@ -19,7 +19,7 @@ from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.contact.engine import Contacts, pairs_of
-from cellcolor.frontend.contact.movement import body_ends
+from cellcolor.frontend.contact.tip import body_ends
 from examples import examples
 
 ARM, TOOL = ROBOTS / "ur5.urdf", ROBOTS / "polishing_tool.urdf"

@@ -7,7 +7,6 @@ import math
 import bent_tools
 import calibrated
 import numpy as np
-import pinocchio as pin
 import pytest
 from bent_tools import ACROSS, BENT, STRAIGHT, tip_frame, tip_frames
 from hypothesis import given
@@ -15,18 +14,16 @@ from hypothesis import strategies as st
 from independent import set_distance, wrapped
 
 from cellcolor.arrays import Array
-from cellcolor.errors import InputError
 from cellcolor.frontend.arm.eaik import EaikKinematics
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import (
     angle_about,
     forward,
-    manipulability,
     task_determinant,
     tip_jacobian,
     turned_about,
 )
-from cellcolor.frontend.arm.robot import FREE_TURN, GIVEN_TURN, Robot
+from cellcolor.frontend.arm.robot import GIVEN_TURN, Robot
 from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at
 from cellcolor.frontend.arm.ur import BRANCHES as UR_BRANCHES
 from cellcolor.frontend.arm.ur import UrKinematics
@@ -76,14 +73,6 @@ def test_the_tool_points_as_far_to_the_goal_as_it_can(
     assert across @ wanted >= (others @ wanted).max() - 1e-5 * length
 
 
-def test_the_rule_says_nothing_along_the_tool() -> None:
-    down, origin = np.array([[0.0, 0.0, -1.0]]), np.zeros((1, 3))
-    for turn in (Turn(along=(0, 0, 3)), Turn(towards_m=(0, 0, 0.5)), Turn(towards_m=(0, 0, 0))):
-        assert np.isnan(turn_at(turn, origin, down)).all()
-    # A tilt of a hundred-thousandth is a direction already.
-    assert turn_at(Turn(along=(1e-5, 0, 1)), origin, down) == pytest.approx(np.array([[1, 0, 0]]))
-
-
 @given(unit, unit, st.floats(-3.1, 3.1))
 def test_an_angle_about_the_tool_is_what_it_was_turned_by(
     direction: tuple[float, ...], other: tuple[float, ...], angle: float
@@ -101,25 +90,6 @@ def test_an_angle_about_the_tool_is_what_it_was_turned_by(
 
 
 # --- solutions ----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("tool", TOOLS)
-@pytest.mark.parametrize(("family", "arm"), ARMS)
-def test_every_configuration_is_among_the_solutions_of_its_pose(
-    family: str, arm: str, tool: str
-) -> None:
-    """The pose is Pinocchio's, and all solutions reach it by Pinocchio."""
-    robot, kinematics = made(family, arm, tool)
-    q = np.random.default_rng(7).uniform(-np.pi, np.pi, (60, 6))
-    tips, directions, across = tip_frames(robot.model, q)
-    every = kinematics.solve_pose(tips, directions, across)
-    assert every.shape == (60, 8, 6)
-    for row, own in enumerate(found(every)):
-        assert wrapped(own - q[row]).max(axis=1).min() < 1e-6
-        pose = tip_frame(robot.model, q[row])
-        for each in own:
-            reached = tip_frame(robot.model, each)
-            assert np.abs(reached.homogeneous - pose.homogeneous).max() < 1e-9
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -190,52 +160,12 @@ def test_a_branch_keeps_its_name_where_the_determinant_is_not_zero(family: str, 
 # --- conditioning -------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("tool", TOOLS)
-def test_measures_are_those_of_all_six_joints(tool: str) -> None:
-    """Volumes of what Pinocchio's Jacobian spans."""
-    robot = bent_tools.robot("kr6", TOOLS[tool])
-    q = np.random.default_rng(17).uniform(-np.pi, np.pi, (40, 6))
-    poses = forward(robot, q)
-    linear, angular = tip_jacobian(poses)
-    determinants = task_determinant(linear, angular, poses.tool_axis, GIVEN_TURN)
-    volumes = manipulability(linear, GIVEN_TURN)
-    data, frame = robot.model.createData(), robot.model.getFrameId("tool_tip")
-    for row, joints in enumerate(q):
-        jacobian = pin.computeFrameJacobian(robot.model, data, joints, frame)
-        assert determinants[row] == pytest.approx(abs(np.linalg.det(jacobian)), abs=1e-12)
-        sizes = np.linalg.svd(jacobian[:3], compute_uv=False)
-        assert volumes[row] == pytest.approx(sizes.prod(), abs=1e-12)
-
-
-def test_with_the_tool_on_the_axis_both_measures_are_those_of_the_free_turn() -> None:
-    robot = bent_tools.robot("kr6", STRAIGHT)
-    poses = forward(robot, np.random.default_rng(1).uniform(-np.pi, np.pi, (200, 6)))
-    linear, angular = tip_jacobian(poses)
-    free, whole = (
-        task_determinant(linear, angular, poses.tool_axis, task) for task in (FREE_TURN, GIVEN_TURN)
-    )
-    assert np.allclose(free, whole, atol=1e-12) and free.max() > 0.01
-    assert np.allclose(
-        manipulability(linear, FREE_TURN), manipulability(linear, GIVEN_TURN), atol=1e-12
-    )
-
-
 @pytest.mark.parametrize(("family", "arm"), ARMS)
 def test_reach_is_what_no_configuration_exceeds(family: str, arm: str) -> None:
     robot, kinematics = made(family, arm, "bent")
     q = np.random.default_rng(2).uniform(-np.pi, np.pi, (20_000, 6))
     far = np.linalg.norm(forward(robot, q).tip - kinematics.viewpoints[0], axis=1).max()
     assert 0.97 * kinematics.reach < far <= kinematics.reach
-
-
-@pytest.mark.parametrize(("family", "arm"), ARMS)
-def test_lever_is_how_far_the_wrist_is_from_the_tip(family: str, arm: str) -> None:
-    """The crossing of axes 5 and 6, by their lines in any configuration."""
-    robot, kinematics = made(family, arm, "bent")
-    poses = forward(robot, np.random.default_rng(5).uniform(-np.pi, np.pi, (1, 6)))
-    p, u, v = poses.origin[0, 6], poses.axis[0, 5], poses.axis[0, 4]
-    along = np.linalg.lstsq(np.column_stack([u, -v]), poses.origin[0, 5] - p, rcond=None)[0][0]
-    assert kinematics.lever == pytest.approx(np.linalg.norm(poses.tip[0] - p - along * u))
 
 
 # --- the set of turns ---------------------------------------------------------------------------
@@ -265,16 +195,3 @@ def test_each_turn_of_a_set_has_its_own_branches() -> None:
 
 
 # --- refusals -----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("family", FAMILIES)
-def test_a_locked_joint_does_not_go_with_a_given_turn(family: str) -> None:
-    robot = bent_tools.robot("ur5e")
-    with pytest.raises(InputError, match="leave it out") as caught:
-        TurnedKinematics(
-            FAMILIES[family],
-            robot,
-            FILES.varied(locked_joint_6_rad=0.0),
-            Turn(along=(1, 0, 0)),
-        )
-    assert caught.value.field == "robot.locked_joint_6_rad"

@@ -70,13 +70,6 @@ def test_branch_names_mean_what_they_say(robot: Robot, geometry: UrGeometry) -> 
         assert ((found[:, branch, 4] < 0) == ("wrist-flipped" in name)).all()
 
 
-def test_out_of_reach_is_nan(geometry: UrGeometry) -> None:
-    down = np.array([[0.0, 0.0, -1.0]])
-    assert np.isnan(solve_inverse(geometry, np.array([[2.0, 0, 0]]), down, LOCKED)).all()
-    # On the base axis the wrist cannot keep its distance from it.
-    assert np.isnan(solve_inverse(geometry, np.array([[0.0, 0, 0.5]]), down, LOCKED)).all()
-
-
 def arm_with_frames(folder: Path, lengths: Array, signs: list[int], turns: list[float]) -> Robot:
     """A UR-type arm whose joints turn in given senses and count from given zeros."""
     d1, a2, a3, d4, d5, d6 = lengths

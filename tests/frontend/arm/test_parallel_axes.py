@@ -13,7 +13,7 @@ import pytest
 from bent_tools import BENT, tip_frame, tip_frames, tool
 from hypothesis import given
 from hypothesis import strategies as st
-from independent import wrapped
+from independent import kinematics_apart, wrapped
 from shipped import ROBOTS, TOP
 from vertex_minima import vertex_minimum
 
@@ -26,11 +26,6 @@ from cellcolor.frontend import BuildResult, Scene, Setup, build_surface
 from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
 from cellcolor.frontend.arm.kinematics import (
     forward,
-    gravity_torques,
-    manipulability,
-    static_torques,
-    task_determinant,
-    tip_jacobian,
 )
 from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.planar import PlanarThree, PlanarTwo, Scara, ScaraWithoutTurn
@@ -135,32 +130,7 @@ def test_solutions_are_the_configurations_of_a_pose_by_name(order: str, seed: in
 @every_order
 def test_poses_jacobians_torques_and_measures_are_pinocchios(order: str) -> None:
     robot, _ = arm(order, 8)
-    q, gravity = configurations(robot, 20, 1), np.array([0.3, -1.0, -9.81])
-    poses = forward(robot, q)
-    linear, angular = tip_jacobian(poses)
-    held = gravity_torques(robot, poses, gravity)
-    pressed = static_torques(robot, poses, linear, gravity, 20.0)
-    model, data = robot.model, robot.model.createData()
-    model.gravity.linear = gravity
-    frame = model.getFrameId("tool_tip")
-    moved = [0, 1, 2] if "P" in order else [0, 1]
-    rows = [*moved, 5] if order in GIVEN else moved
-    for row, joints in enumerate(q):
-        own = pin.computeFrameJacobian(
-            model, data, joints, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
-        )
-        there = tip_frame(model, joints)
-        assert np.abs(poses.tip[row] - there.translation).max() < 1e-12
-        assert np.abs(poses.tool_axis[row] - there.rotation[:, 2]).max() < 1e-12
-        assert np.abs(np.vstack([linear[row], angular[row]]) - own).max() < 1e-12
-        still = pin.computeGeneralizedGravity(model, data, joints)
-        assert np.abs(held[row] - still).max() < 1e-9
-        push = own[:3].T @ (20.0 * there.rotation[:, 2])
-        assert np.abs(pressed[row] - still - push).max() < 1e-9
-        determinant = task_determinant(linear, angular, poses.tool_axis, robot.task)[row]
-        assert determinant == pytest.approx(abs(np.linalg.det(own[rows])), abs=1e-12)
-        sizes = np.linalg.svd(own[moved], compute_uv=False)
-        assert manipulability(linear, robot.task)[row] == pytest.approx(sizes.prod(), abs=1e-9)
+    assert kinematics_apart(robot, configurations(robot, 20, 1)) < 1e-9
 
 
 @every_order

@@ -15,7 +15,7 @@ from world import NEIGHBORS, PAIRS, World
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.ur import UrGeometry, ur_geometry
+from cellcolor.frontend.arm.ur import ur_geometry
 from cellcolor.frontend.arm.urdf import load_urdf
 
 ARM, TOOL = "ur5.urdf", "polishing_tool.urdf"
@@ -39,13 +39,6 @@ def written(tmp_path: Path) -> Callable[..., Path]:
         return tmp_path
 
     return write
-
-
-def test_constants_are_the_published_ones(geometry: UrGeometry) -> None:
-    # Universal Robots, "DH parameters for calculations of kinematics and dynamics", UR5.
-    found = (geometry.a2, geometry.a3, geometry.d4, geometry.d5, geometry.shoulder[2])
-    assert np.allclose(found, (-0.425, -0.39225, 0.10915, 0.09465, 0.089159), atol=1e-12)
-    assert geometry.reach == pytest.approx(0.0823 + 0.10, abs=1e-12)
 
 
 def test_masses_and_limits_are_the_published_ones(robot: Robot) -> None:
@@ -168,12 +161,6 @@ def test_faults_are_named(
     assert "\n" not in str(caught.value)
 
 
-def test_missing_file(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="No such file") as caught:
-        load_urdf(tmp_path / "none.urdf")
-    assert caught.value.file == str(tmp_path / "none.urdf")
-
-
 @pytest.mark.parametrize(
     ("joint", "pattern", "replacement", "message"),
     [
@@ -192,12 +179,6 @@ def test_other_arms_are_refused(
         ur_geometry(load(folder))
     assert caught.value.field == f"joint[{joint}]"
     assert "not a UR-type arm" in caught.value.message
-
-
-def test_tool_off_the_axis_is_refused(written: Callable[..., Path]) -> None:
-    folder = written(TOOL, r'<origin xyz="0 0 0.1"/>', '<origin xyz="0.01 0 0.1"/>')
-    with pytest.raises(InputError, match="must lie on this joint's axis"):
-        ur_geometry(load(folder))
 
 
 def shapeless(text: str, link: str) -> str:
@@ -249,11 +230,6 @@ def test_degrees_are_refused(
     with pytest.raises(InputError, match=f"looks like degrees: {message}") as caught:
         load(written(ARM, pattern, replacement))
     assert caught.value.field == field
-
-
-def test_two_turns_are_radians(written: Callable[..., Path]) -> None:
-    robot = load(written(ARM, r'upper="6.28\d*"', f'upper="{4 * np.pi!r}"'))
-    assert robot.upper[0] == 4 * np.pi
 
 
 def test_limits_that_nothing_reaches_are_none(written: Callable[..., Path]) -> None:

@@ -93,23 +93,6 @@ def test_ur_arms_are_those_of_the_published_constants(name: str) -> None:
             assert model.inertias[joint].mass == pytest.approx(mass)
 
 
-@pytest.mark.parametrize("name", REACH)
-def test_spherical_wrists_reach_as_far_as_published(name: str) -> None:
-    arm = robot(name)
-    data = arm.model.createData()
-    joints = np.zeros(6)
-    farthest = 0.0
-    for joints[1] in np.radians(np.arange(-180, 181, 5)):
-        for joints[2] in np.radians(np.arange(-180, 181, 0.5)):
-            pin.forwardKinematics(arm.model, data, joints)
-            x, y, _ = data.oMi[5].translation  # where axes 4, 5 and 6 meet
-            farthest = max(farthest, float(np.hypot(x, y if name != "tx2_60" else 0.0)))
-    assert farthest == pytest.approx(REACH[name], abs=5e-4)
-    axes = [(data.oMi[k].rotation @ arm.axis[k - 1], data.oMi[k].translation) for k in (4, 5, 6)]
-    for axis, origin in axes:
-        assert np.allclose(np.cross(data.oMi[5].translation - origin, axis), 0, atol=1e-12)
-
-
 @pytest.mark.parametrize("name", [*UR, *REACH, CALIBRATED])
 def test_at_home_nothing_is_hit_and_the_tool_looks_down(name: str) -> None:
     setup, arm = setup_of(name), robot(name)

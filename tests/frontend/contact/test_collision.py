@@ -6,29 +6,21 @@ import os
 import signal
 from collections.abc import Callable
 
-import coal
 import numpy as np
 import pytest
 from reasons import Reason
-from scipy.spatial.transform import Rotation
 from world import PAIRS, World
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend import build_surface
+from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.shape import Shape
 from cellcolor.frontend.contact.engine import Contacts, pairs_of, pairs_with
-from cellcolor.frontend.contact.movement import HalfSpace
 from cellcolor.frontend.contact.obstacle import (
-    BoxObstacle,
-    CapsuleObstacle,
-    ConeObstacle,
     CylinderObstacle,
-    HalfSpaceObstacle,
-    Obstacle,
-    SphereObstacle,
 )
+from cellcolor.frontend.contact.tip import HalfSpace
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
 from cellcolor.frontend.parts.surface import Surface
@@ -78,64 +70,6 @@ def test_self_collision_agrees_with_coal(robot: Robot, wok: Surface, joints: Arr
         world.place(q)
         distances.append(world.to_itself(PAIRS))
     agree(Contacts(pairs_of(robot), robot)(joints), np.array(distances))
-
-
-@pytest.mark.parametrize(
-    ("height", "normal"), [(-0.02, (0.0, 0.0, 1.0)), (0.05, (0.3, -0.5, 2.0)), (-0.1, (0.9, 0, 1))]
-)
-def test_ground_agrees_with_coal(
-    robot: Robot, wok: Surface, joints: Array, height: float, normal: tuple[float, float, float]
-) -> None:
-    world = World(robot, wok.vertices, wok.faces)
-    distances = []
-    for q in joints:
-        world.place(q)
-        distances.append(world.to_ground(height, EXEMPT, normal))
-    ground = HalfSpace.through(np.array([0.0, 0.0, height]), np.array(normal))
-    agree(hits_ground(robot, ground, EXEMPT, joints), np.array(distances))
-
-
-def test_object_agrees_with_coal(robot: Robot, wok: Surface, joints: Array) -> None:
-    world = World(robot, wok.vertices, wok.faces)
-    found = hits(robot, mesh(wok), joints)
-    assert 0.05 < found.mean() < 0.95
-    near = 0
-    for q, verdict in zip(joints, found, strict=True):
-        world.place(q)
-        distance = world.to_object()
-        # A shell has no inside: depths mean nothing, so "touching" is a distance of zero.
-        if verdict != (distance <= 0):
-            assert abs(distance) <= CONTACT
-            near += 1
-    assert near < 0.01 * len(joints)
-
-
-ASIDE = {"position_m": (0.3, -0.1, 0.35), "rpy_rad": (0.4, -0.7, 1.1)}
-WALL = {"position_m": (0.6, 0.0, 0.0), "rpy_rad": (0.2, -1.4, 0.3)}
-OBSTACLES = [
-    (BoxObstacle(kind="box", size_m=(0.1, 0.4, 0.2), **ASIDE), coal.Box(0.1, 0.4, 0.2)),
-    (CylinderObstacle(kind="cylinder", radius_m=0.1, height_m=0.5, **ASIDE),
-     coal.Cylinder(0.1, 0.5)),
-    (SphereObstacle(kind="sphere", radius_m=0.2, **ASIDE), coal.Sphere(0.2)),
-    (ConeObstacle(kind="cone", radius_m=0.2, height_m=0.5, **ASIDE), coal.Cone(0.2, 0.5)),
-    (CapsuleObstacle(kind="capsule", radius_m=0.1, axis_m=0.5, **ASIDE), coal.Capsule(0.1, 0.5)),
-    (HalfSpaceObstacle(kind="half-space", **WALL), coal.Halfspace(np.array([0.0, 0.0, 1.0]), 0.0)),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("obstacle", "shape"), OBSTACLES, ids=[one.kind for one, _ in OBSTACLES])
-def test_obstacles_agree_with_coal(
-    robot: Robot, wok: Surface, joints: Array, obstacle: Obstacle, shape: coal.ShapeBase
-) -> None:
-    world = World(robot, wok.vertices, wok.faces)
-    turn = Rotation.from_euler("xyz", obstacle.rpy_rad).as_matrix()
-    pose = coal.Transform3s(turn, np.array(obstacle.position_m))
-    distances = []
-    for q in joints:
-        world.place(q)
-        distances.append(world.to_solid(shape, pose))
-    found = hits(robot, obstacle.solid(), joints)
-    agree(found, np.array(distances))
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")

@@ -12,10 +12,9 @@ from hypothesis import strategies as st
 from meshed_arm import is_inside, link_meshes
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.body import mesh_body
+from cellcolor.frontend.arm.body import Shape, convex_hull, mesh_body
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.shape import Shape, convex_hull, one_of_each_part
 from cellcolor.frontend.contact.engine import Contacts, Pair
 from cellcolor.trajectory_checker.validity import touching
 from examples import examples
@@ -64,12 +63,3 @@ def test_the_hull_is_wound_outward_and_has_no_other_vertices() -> None:
     assert read.is_watertight and read.volume == pytest.approx(mesh.convex_hull.volume)
     assert len(np.unique(hull.faces)) == len(hull.vertices)
     assert convex_hull(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])) is None
-
-
-def test_parts_are_counted() -> None:
-    boxes = [trimesh.creation.box((1, 1, 1)) for _ in range(3)]
-    for number, box in enumerate(boxes):
-        box.apply_translation((2 * number, 0, 0))
-    mesh = trimesh.util.concatenate(boxes)
-    found = one_of_each_part(np.array(mesh.vertices), np.array(mesh.faces))
-    assert sorted(np.rint(found[:, 0] / 2).tolist()) == [0, 1, 2]

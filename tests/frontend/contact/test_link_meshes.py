@@ -15,14 +15,13 @@ from shipped import ROBOTS
 from world import KINDS, NEIGHBORS, standing
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.body import Shapes
+from cellcolor.frontend.arm.body import Shape, Shapes
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.shape import Shape
 from cellcolor.frontend.contact.engine import Contacts, Pair, pairs_of, pairs_with
-from cellcolor.frontend.contact.movement import HalfSpace
 from cellcolor.frontend.contact.obstacle import BoxObstacle, CylinderObstacle, SphereObstacle
+from cellcolor.frontend.contact.tip import HalfSpace
 from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
 from cellcolor.trajectory_checker.validity import touching
 

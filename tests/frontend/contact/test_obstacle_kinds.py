@@ -17,7 +17,6 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.obstacle import (
-    OBSTACLES,
     BoxGridObstacle,
     BoxObstacle,
     CapsuleObstacle,
@@ -206,8 +205,3 @@ def test_the_tilted_ground_blocks_what_lies_in_it() -> None:
     level = plane.varied(ground=Ground(height_m=-1.0, normal=(0.0, 0.0, 1.0)))
     assert level.model_dump()["ground"] == {"height_m": -1.0}
     assert "ground at 0 m, tilted by 14.0362 degrees" in str(plane)
-
-
-def test_every_kind_is_found_by_its_name() -> None:
-    for cls in (ConeObstacle, CapsuleObstacle, HalfSpaceObstacle, BoxGridObstacle):
-        assert OBSTACLES.find(cls.model_fields["kind"].default) is cls

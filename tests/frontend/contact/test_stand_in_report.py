@@ -10,7 +10,7 @@ import trimesh
 
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.body import mesh_body
-from cellcolor.frontend.contact.stand_in_report import StandInReport, measured
+from cellcolor.frontend.arm.notes import StandInReport, measured
 from cellcolor.frontend.setup import MeshCollision
 
 pytestmark = pytest.mark.second

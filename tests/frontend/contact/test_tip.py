@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +12,7 @@ from shipped import ROBOTS
 from cellcolor.arrays import Array
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.obstacle import BoxObstacle, MeshObstacle, SphereObstacle
+from cellcolor.frontend.contact.obstacle import BoxObstacle, SphereObstacle
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import RectangleObject, disc_mesh
@@ -83,20 +82,6 @@ def test_nothing_below_the_ground_or_nearer_to_it_than_the_radius(
     assert result.report.unreachable["tip blocked"] == blocked.sum()
     if all_blocked:
         assert result.report.reachable == 0
-
-
-def test_a_mesh_blocks_like_a_box(tmp_path: Path) -> None:
-    """The plate as a file; a shell, which the tool's axis crosses."""
-    half = np.array([0.075, 0.075, 0.004])
-    corners = [half * (x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
-    sides = ["2 4 1", "5 2 1", "1 4 3", "3 5 1", "2 8 4", "6 2 5"]
-    sides += ["6 8 2", "4 8 3", "7 5 3", "3 8 7", "7 6 5", "8 6 7"]
-    lines = ["v {} {} {}".format(*p) for p in corners] + [f"f {side}" for side in sides]
-    (tmp_path / "plate.obj").write_text("\n".join(lines) + "\n")
-    shell = MeshObstacle(file="plate.obj", meters_per_unit=1.0, position_m=(0.45, 0.1, 0.1))
-    as_mesh = build_surface(PLANE.with_obstacle(shell).varied(folder=tmp_path))
-    as_box = build_surface(PLANE.with_obstacle(plate(0.008, 0.1)))
-    assert (as_mesh.reasons == as_box.reasons).all()
 
 
 def test_the_region_reaches_to_the_body_of_the_tool(robot: Robot) -> None:

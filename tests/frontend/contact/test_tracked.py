@@ -12,7 +12,7 @@ from shipped import ROBOTS
 from cellcolor.frontend.arm.kinematics import forward, turned
 from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.movement import (
+from cellcolor.frontend.contact.tip import (
     body_ends,
     longest_steps,
     tracked_points,

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from dirty import DIRTY, parts_with
+from dirty import DIRTY
 from shipped import shipped
 
 from cellcolor.errors import InputError
@@ -144,15 +144,6 @@ def test_what_cannot_be_repaired(
     with pytest.raises(InputError, match=message) as caught:
         repair_mesh(vertices, faces)
     assert caught.value.field == field
-
-
-def test_components_by_their_share() -> None:
-    ball = DIRTY["inverted"]()[0], DIRTY["inverted"]()[1][:, ::-1]
-    small = (0.1 * ball[0] + 0.5, ball[1])  # a hundredth of the area
-    mesh = parts_with(ball, small)
-    for share, left in ((0.0, 2), (0.009, 2), (0.011, 1)):
-        made = repair_mesh(*mesh, least_share=share)
-        assert len(made.faces) == left * len(ball[1])
 
 
 @pytest.mark.slow

@@ -9,9 +9,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.spatial.distance import pdist
 
-from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.frontend.parts.mending import crossing_pairs
-from cellcolor.frontend.parts.unfolding import fold_angle, folds, unfolded
+from cellcolor.frontend.parts.remeshing import fold_angle, folds, unfolded
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from examples import examples
 
@@ -99,11 +98,3 @@ def test_a_sharp_edge_of_the_part_is_no_fold(wedge: float, expected: float) -> N
     )
     mesh = TriangleMesh(points, np.array([[0, 1, 2], [1, 0, 3]]))
     assert np.degrees(fold_angle(mesh)) == pytest.approx(expected)
-
-
-def test_the_deadline() -> None:
-    """It is looked at before each fold."""
-    points, faces = square()
-    points[4 * SIDE + 4, 0] += 1.7
-    with pytest.raises(OutOfTime):
-        unfolded(points, faces, ANGLE, 3.0, Deadline.after(0.0))

@@ -15,8 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.mesh_file import load_mesh, read_mesh, read_obj
-from cellcolor.frontend.parts.polygons import triangulated
+from cellcolor.frontend.parts.mesh_file import load_mesh, read_mesh, read_obj, triangulated
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
@@ -50,11 +49,6 @@ def test_materials_objects_and_groups_are_one_mesh(tmp_path: Path) -> None:
 )
 def test_four_corners(tmp_path: Path, face: str) -> None:
     assert read(tmp_path, SQUARE + face)[1] == [[0, 1, 2], [0, 2, 3]]
-
-
-def test_what_a_vertex_has_besides_its_place_is_left(tmp_path: Path) -> None:
-    text = "v 0 0 0 1.0\nv 1 0 0 0.5 0.5 0.5\nv 0 1 0\nf 1 2 3\n"
-    assert read(tmp_path, text)[0] == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
 
 
 @pytest.mark.parametrize(
@@ -186,8 +180,3 @@ def test_a_coordinate_that_is_no_number(
         warnings.simplefilter("error")
         read_mesh(file)
     assert (caught.value.file, caught.value.field) == (str(file), place)
-
-
-def test_a_directory_is_no_mesh(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="is a directory"):
-        read_mesh(tmp_path)

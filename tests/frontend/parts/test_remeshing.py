@@ -15,8 +15,7 @@ pytest.importorskip("gpytoolbox", reason="the extra 'parts' is not installed")
 
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
-from cellcolor.frontend import sizes
-from cellcolor.frontend.parts import remeshing
+from cellcolor.frontend.parts import remeshing, surface
 from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.mesh_file import read_mesh
 from cellcolor.frontend.parts.repairing import repair_mesh
@@ -96,7 +95,7 @@ def test_a_mesh_with_more_vertices_than_fit_is_made_coarser(
     """An open one, whose border is fine enough: only what comes out has to fit."""
     grid, faces = grid_mesh(1.0, 1.0, 1000, 0.0, 0)
     flat = np.column_stack([grid, np.zeros(len(grid))])
-    monkeypatch.setattr(sizes, "MOST_VERTICES", 700)
+    monkeypatch.setattr(surface, "MOST_VERTICES", 700)
     with pytest.raises(InputError, match="at most 700 fit"):
         repair_mesh(flat, faces)
     made = repair_mesh(flat, faces, edge_length_m=0.06)

@@ -10,17 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.inspection import inspect_mesh
 from cellcolor.frontend.parts.mending import (
-    against_the_others,
     crossing_pairs,
     cut_apart,
     filled,
-    inside_out,
     merged,
     refuse_gaps,
-    repeated_faces,
-    turned,
 )
 from cellcolor.frontend.parts.repairing import mended
 from cellcolor.frontend.parts.shapes import disc_mesh
@@ -51,39 +46,6 @@ def test_a_spoiled_ball_is_a_ball_again(seed: int, turn: int, twice: int, gone: 
         assert mesh.volume == pytest.approx(BALL.volume)
 
 
-@given(seeds)
-def test_parts_and_holes(seed: int) -> None:
-    """Balls, tori and open caps at random: how many of each is known."""
-    rng = np.random.default_rng(seed)
-    balls, tori, caps = rng.integers([1, 0, 0], 4)
-    torus = trimesh.creation.torus(1.0, 0.3, 12, 8)
-    cap = trimesh.creation.icosphere(subdivisions=1)
-    cap.update_faces(cap.triangles_center[:, 2] > 0)
-    cap.remove_unreferenced_vertices()
-    ball = trimesh.creation.icosphere(subdivisions=1)
-    meshes = [m.copy() for m, n in ((ball, balls), (torus, tori), (cap, caps)) for _ in range(n)]
-    for number, mesh in enumerate(meshes):
-        mesh.apply_translation([4.0 * number, 0, 0])
-    whole = trimesh.util.concatenate([meshes[k] for k in rng.permutation(len(meshes))])
-    facts = inspect_mesh("whole", np.array(whole.vertices), np.array(whole.faces), "m")
-    assert len(facts.components) == len(meshes)
-    assert len(facts.holes) == caps
-    assert facts.area_m2 == pytest.approx(whole.area)
-    assert sum(part.closed for part in facts.components) == balls + tori
-
-
-@given(seeds)
-def test_winding_is_made_alike_whatever_it_was(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    faces = turned(FACES, rng.random(len(FACES)) < rng.random())
-    turn, one_sided = against_the_others(faces)
-    assert turn.sum() <= len(faces) / 2 and not one_sided.any()
-    alike = turned(faces, turn)
-    alike = turned(alike, inside_out(TriangleMesh(VERTICES, alike)))
-    mesh = trimesh.Trimesh(VERTICES, alike, process=False)
-    assert mesh.is_winding_consistent and mesh.volume == pytest.approx(BALL.volume)
-
-
 @given(seeds, st.integers(2, 30))
 def test_crossing_faces_are_those_that_fcl_finds(seed: int, count: int) -> None:
     """Triangles at random that share no vertex, one pair after the other."""
@@ -104,10 +66,6 @@ def test_crossing_faces_are_those_that_fcl_finds(seed: int, count: int) -> None:
     }
     found = crossing_pairs(points, faces)
     assert set(map(tuple, found.tolist())) == expected
-
-
-def test_neighbors_do_not_cross() -> None:
-    assert not len(crossing_pairs(VERTICES, FACES))
 
 
 def test_a_face_that_comes_back_through_one_that_it_touches() -> None:
@@ -197,17 +155,6 @@ def test_a_vertex_on_an_edge_that_only_a_flat_face_has_is_refused(seed: int, sha
     side = VERTICES[b] - VERTICES[a]
     assert np.linalg.norm(np.cross(along, side)) < 1e-3 * side @ side
     refuse_gaps(points, np.array([[a, b, c]]), np.array([[a, middle, middle]]))
-
-
-def test_copies_are_faces_with_the_same_corners() -> None:
-    faces = np.array([[0, 1, 2], [1, 2, 3], [2, 0, 1], [3, 2, 1], [0, 1, 3]])
-    assert repeated_faces(faces).tolist() == [False, False, True, True, False]
-
-
-def test_what_is_within_a_hundred_millionth_is_one_place() -> None:
-    for gap, left in ((1e-10, 3), (1e-4, 4)):
-        points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [gap, 0, 0]], dtype=float)
-        assert len(merged(points, np.array([[0, 1, 2], [3, 2, 1]]))[0]) == left
 
 
 @given(seeds, st.integers(1, 40))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -14,10 +13,9 @@ from shipped import shipped
 
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
-from cellcolor.frontend import sizes
 from cellcolor.frontend.parts import rounding
 from cellcolor.frontend.parts.mesh import mesh_surface
-from cellcolor.frontend.parts.rounding import longest_beside_sharp, note_on_triangles, rounded
+from cellcolor.frontend.parts.rounding import note_on_triangles, rounded
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.mesh.dividing import halved
 from cellcolor.mesh.triangle_mesh import TriangleMesh
@@ -124,31 +122,6 @@ def test_beside_an_edge_of_ninety_degrees() -> None:
     assert {0, 0.25, 0.5} <= set(found)
 
 
-def test_the_other_side_of_a_thin_plate() -> None:
-    """It counts for nothing in the middle, and comes in without a jump towards the rim."""
-    x = np.linspace(0, 3, 61)
-    thick, wide = 0.2, np.array([-1.5, 0.0, 1.5])
-    rows = np.array([[a, thick / 2] for a in x] + [[a, -thick / 2] for a in x[::-1]])
-    count = len(rows)
-    points = np.array([[a, b, c] for b in wide for a, c in rows])
-    low = np.array([k * count + i for k in range(2) for i in range(count - 1)])
-    faces = np.concatenate(
-        [
-            np.column_stack([low, low + count, low + 1]),
-            np.column_stack([low + 1, low + count, low + count + 1]),
-        ]
-    )
-    strip = mesh_surface(points, faces[:, ::-1] if _points_down(points, faces) else faces)
-    normals = rounded(strip, 0.5).normals[count : count + len(x)]
-    assert normals[x < 2.4] == pytest.approx(np.tile([0.0, 0.0, 1.0], ((x < 2.4).sum(), 1)))
-    turns = [angle(*pair) for pair in pairwise(normals)]
-    assert 30 < sum(turns) < 120 and max(turns) < 20
-
-
-def _points_down(points: np.ndarray, faces: np.ndarray) -> bool:
-    return bool(TriangleMesh(points, faces).area_vectors[0, 2] < 0)
-
-
 def test_faces_larger_than_the_radius_keep_their_normals() -> None:
     """To the bit: what was built before there was a radius is built the same on such a mesh."""
     ball = surface_of(trimesh.creation.icosphere(2))
@@ -165,18 +138,10 @@ def test_many_faces_around_a_vertex(monkeypatch: pytest.MonkeyPatch) -> None:
     assert rounded(part, 0.6).normals == pytest.approx(usual)
     with pytest.raises(OutOfTime):
         rounded(part, 0.6, Deadline.after(0.0))
-    monkeypatch.setattr(sizes, "_MOST_AROUND", 1000)
+    monkeypatch.setattr(rounding, "_MOST_AROUND", 1000)
     with pytest.raises(InputError, match="a smaller radius, or larger triangles") as caught:
         rounded(part, 0.6)
     assert caught.value.field == "task.edge_radius_m"
-
-
-def test_the_longest_edge_beside_a_sharp_one() -> None:
-    """A box of two triangles a side has diagonals; a ball has no sharp edge."""
-    assert longest_beside_sharp(surface_of(trimesh.creation.box((3, 4, 12)))) == pytest.approx(
-        np.hypot(4, 12)
-    )
-    assert not longest_beside_sharp(surface_of(trimesh.creation.icosphere(3)))
 
 
 @pytest.mark.parametrize(("radius", "said"), [(0.0142, 0), (0.0141, 1)])

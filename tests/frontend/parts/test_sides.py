@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import trimesh
 
+from cellcolor.frontend.parts.cover import facing, note_on_shell, shell_sides, thickness
 from cellcolor.frontend.parts.mesh import mesh_surface
-from cellcolor.frontend.parts.sides import facing, note_on_shell, shell_sides, thickness
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 

@@ -12,16 +12,14 @@ from shipped import SCENES, WOK
 
 from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, build_surface
-from cellcolor.frontend.contact.movement import longest_steps
 from cellcolor.frontend.contact.obstacle import CylinderObstacle
-from cellcolor.frontend.parts.shapes import disc_mesh
-from cellcolor.frontend.parts.surface import Surface, along_edges
-from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.reach.between import (
-    at_domain_border,
+from cellcolor.frontend.contact.tip import longest_steps
+from cellcolor.frontend.links import (
     remains_valid,
-    strides,
 )
+from cellcolor.frontend.parts.shapes import disc_mesh
+from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
 
 
@@ -64,24 +62,6 @@ def test_a_gap_on_the_edge_is_found_and_nothing_else(pieces: int, reach: float) 
     assert checked(surface, test, 1).all()  # nobody asks for a point
 
 
-def test_many_points_are_asked_in_batches(monkeypatch: pytest.MonkeyPatch) -> None:
-    surface = plane()
-    asked: list[int] = []
-
-    def test(points: Array, _: Array, __: Array) -> Array:
-        asked.append(len(points))
-        return points[:, 1] > 0
-
-    whole = checked(surface, test, 40)
-    monkeypatch.setattr("cellcolor.memory.CHUNK", 100)
-    total = sum(asked)
-    asked.clear()
-    batched = checked(surface, test, 40)
-    assert (batched == whole).all()
-    # A batch ends with a whole edge of 39 points.
-    assert sum(asked) == total and max(asked) <= 140
-
-
 def test_a_jump_is_no_link() -> None:
     """A body that is in two places on both sides of a point is not followed forever."""
     surface = plane()
@@ -99,25 +79,6 @@ def test_a_jump_is_no_link() -> None:
     found = remains_valid(surface, edges, branches, cut, ends, np.array([0.01]), test)
     across = (surface.vertices[edges][:, :, 0] > 0.21).sum(axis=1) == 1
     assert (found == ~across).all() and across.any()
-
-
-def test_what_two_balls_leave_out() -> None:
-    """Of what balls on the way meet, the first and the last one miss at most 0.65 mm of depth."""
-    radii = np.array([0.0004, 0.02, 0.0375, 0.043, 0.055])
-    for radius, step in zip(radii, longest_steps(radii), strict=True):
-        across = np.linspace(0, radius, 200_001)
-        missed = np.hypot(across, step / 2) > radius
-        depth = radius - across[missed].min()
-        assert depth == pytest.approx(min(0.00065, radius), abs=1e-6)
-    assert longest_steps(radii)[1:] == pytest.approx([0.0101, 0.0139, 0.0149, 0.0169], abs=1e-4)
-
-
-def test_strides_are_of_the_body_that_moves_too_far() -> None:
-    random = np.random.default_rng(4)
-    first, second = random.normal(size=(2, 6, 50, 3))
-    longest = random.uniform(0.5, 2, 6)
-    expected = (np.linalg.norm(second - first, axis=2) / longest[:, None]).max(axis=0)
-    assert strides(first, second, longest) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("name", ["hemisphere_tilted", "square"])
@@ -169,22 +130,6 @@ def test_no_body_moves_far_between_tested_points(name: str) -> None:
             largest = max(largest, float((moved / allowed).max()))
         tested += len(inner)
     assert tested > 100 and largest > 0.95
-
-
-def test_points_are_on_the_edge_in_order() -> None:
-    surface = plane()
-    edges = surface.edges()[:1]
-    points, _ = along_edges(surface, np.repeat(edges, 3, axis=0), np.array([0.0, 0.25, 1.0]))
-    start, end = surface.vertices[edges[0]]
-    assert np.allclose(points, [start, start + (end - start) / 4, end])
-
-
-def test_border_of_a_domain() -> None:
-    edges = np.array([[0, 1], [1, 2], [2, 3], [3, 4]])
-    valid = np.array([[False, True], [True, True], [True, True], [True, True], [True, True]])
-    # Vertex 1 is beside the vertex that the first branch does not reach.
-    assert at_domain_border(edges, valid)[:, 0].tolist() == [True, True, False, False]
-    assert not at_domain_border(edges, valid)[:, 1].any()
 
 
 def test_asked_for_in_the_setup(scene: Callable[..., Scene]) -> None:

@@ -15,10 +15,8 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.contact.obstacle import BoxObstacle, MeshObstacle
 from cellcolor.frontend.parts.mesh_file import load_mesh
-from cellcolor.frontend.parts.shapes import RectangleObject, disc_mesh, spherical_cap
-from cellcolor.frontend.parts.surface import refine
+from cellcolor.frontend.parts.shapes import RectangleObject
 from cellcolor.frontend.scene import Scene
-from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 Varied = Callable[..., Scene]
 KINEMATIC = {
@@ -52,12 +50,6 @@ def test_each_constraint_binds_alone(scene: Varied, alone: str) -> None:
     assert found <= OF[alone] | {Reason.VALID, Reason.NO_SOLUTION}
 
 
-def test_all_constraints_are_on_by_default(scene: Varied) -> None:
-    wok = scene(arm=weak, setup={"min_manipulability_m3": 0.05}, target_vertices=200, height_m=0.05)
-    found = {Reason(code) for code in np.unique(build_surface(wok).reasons)}
-    assert all(found & reasons for reasons in OF.values())
-
-
 def test_switched_off_collisions_admit_an_object_in_the_base(scene: Varied) -> None:
     wok = scene(position_m=(0.0, 0.0, -0.12), target_vertices=50)
     with pytest.raises(InputError, match="'base_link'"):
@@ -85,6 +77,13 @@ def test_patch_and_collision_object_are_two_things(scene: Varied) -> None:
     assert len(beside.surface.vertices) == len(alone.surface.vertices)
 
 
+def test_maximum_edge_length_of_a_scene_is_in_meters(tmp_path: Path) -> None:
+    (tmp_path / "box.obj").write_text(obj(100 * BOX, OUTWARD))
+    surface = load_mesh(tmp_path / "box.obj", 0.001, max_edge_m=0.03)
+    edges = surface.edges()
+    assert surface.lengths(edges).max() <= 0.03 and surface.vertices.max() == pytest.approx(0.1)
+
+
 def test_mesh_obstacle_is_like_the_primitive(scene: Varied, tmp_path: Path) -> None:
     wok = scene(target_vertices=300)
     size, center = 0.08, (0.24, 0.0, 0.2)
@@ -96,37 +95,6 @@ def test_mesh_obstacle_is_like_the_primitive(scene: Varied, tmp_path: Path) -> N
     mesh = build_surface(wok.with_obstacle(shell))
     assert (primitive.reasons == Reason.OBSTACLE_COLLISION).sum() > 100
     assert (primitive.reasons == mesh.reasons).all()
-
-
-@pytest.mark.parametrize("longest", [0.9, 0.31, 0.1])
-def test_refinement(longest: float) -> None:
-    coarse = TriangleMesh(BOX, np.array(OUTWARD))
-    fine, lies_in = refine(coarse, longest)
-    vertices, faces = fine.points, fine.corners
-    assert np.allclose(np.bincount(lies_in, fine.areas), coarse.areas)
-    assert np.allclose(fine.triangle_normals, coarse.triangle_normals[lies_in])
-    mesh = trimesh.Trimesh(vertices, faces, process=False)
-    assert mesh.edges_unique_length.max() <= longest
-    assert mesh.is_watertight and mesh.is_winding_consistent
-    assert mesh.volume == pytest.approx(1) and mesh.area == pytest.approx(6)
-    assert np.array_equal(vertices[:8], BOX)
-
-
-def test_one_long_edge_is_halved_for_both_faces() -> None:
-    kite = np.array([[0, 0, 0], [1, -0.3, 0], [2, 0, 0], [1, 0.3, 0]], dtype=float)
-    mesh, _ = refine(TriangleMesh(kite, np.array([[0, 1, 2], [0, 2, 3]])), 1.5)
-    vertices, faces = mesh.points, mesh.corners
-    assert len(vertices) == 5 and len(faces) == 4
-    assert vertices[4].tolist() == [1, 0, 0]
-    assert (np.cross(vertices[faces[:, 1]] - vertices[faces[:, 0]],
-                     vertices[faces[:, 2]] - vertices[faces[:, 0]])[:, 2] > 0).all()  # fmt: skip
-
-
-def test_maximum_edge_length_of_a_scene_is_in_meters(tmp_path: Path) -> None:
-    (tmp_path / "box.obj").write_text(obj(100 * BOX, OUTWARD))
-    surface = load_mesh(tmp_path / "box.obj", 0.001, max_edge_m=0.03)
-    edges = surface.edges()
-    assert surface.lengths(edges).max() <= 0.03 and surface.vertices.max() == pytest.approx(0.1)
 
 
 def test_repair_only_on_request(tmp_path: Path) -> None:
@@ -141,19 +109,3 @@ def test_repair_only_on_request(tmp_path: Path) -> None:
     mesh = trimesh.Trimesh(mended.vertices, mended.faces, process=False)
     assert len(mended.vertices) == 8 and mesh.is_watertight
     assert mesh.volume == pytest.approx(1)
-
-
-def test_repair_does_not_hide_what_it_cannot_mend(tmp_path: Path) -> None:
-    file = tmp_path / "bad.obj"
-    file.write_text(obj(BOX, [*OUTWARD, [0, 1, 6]]))
-    with pytest.raises(InputError, match="manifold"):
-        load_mesh(file, 1.0, mend=True)
-
-
-def test_refined_cap_keeps_its_shape(tmp_path: Path) -> None:
-    cap = spherical_cap(0.2, 1.0, *disc_mesh(100, 0.0, 0))
-    file = tmp_path / "cap.ply"
-    trimesh.Trimesh(cap.vertices, cap.faces, process=False).export(file)
-    fine = load_mesh(file, 1.0, max_edge_m=0.02)
-    assert len(fine.vertices) > 2 * len(cap.vertices)
-    assert fine.vertex_areas().sum() == pytest.approx(cap.vertex_areas().sum())

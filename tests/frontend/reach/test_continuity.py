@@ -98,36 +98,10 @@ class Plane:
         return link(self.surface, self.edges, self.candidates, measure(policy), None, self.probe)
 
 
-def test_slow_motion_is_linked_without_probing() -> None:
-    plane = Plane(lambda p: 0.3 * p[0])
-    assert plane.linked().all() and plane.asked == 0
-
-
 def test_fast_but_smooth_motion_is_linked_after_probing() -> None:
     plane = Plane(lambda p: 1.9 * p[0])
     assert farthest(*plane.candidates.configurations[[1, 0], 0]) > 1.1  # more than the bound
     assert plane.linked().all() and plane.asked > 0
-
-
-def test_many_probes_are_taken_in_batches(monkeypatch: pytest.MonkeyPatch) -> None:
-    plane = Plane(lambda p: 1.9 * p[0] if p[1] < 0.5 else np.sign(p[0]))
-    whole = plane.linked()
-    largest = 0
-
-    def probe(points: Array, directions: Array, branch: Array) -> tuple[Array, Array]:
-        nonlocal largest
-        largest = max(largest, len(points))
-        return plane.probe(points, directions, branch)
-
-    monkeypatch.setattr("cellcolor.memory.CHUNK", 50)
-    batched = link(plane.surface, plane.edges, plane.candidates, measure(), None, probe)
-    assert (batched == whole).all() and 0 < largest <= 50
-
-
-def test_jump_between_the_ends_is_not_linked() -> None:
-    plane = Plane(lambda p: 0.0 if p[0] < 0.3 else 1.5)
-    across = (plane.surface.vertices[plane.edges][:, :, 0] < 0.3).sum(axis=1) == 1
-    assert (plane.linked()[:, 0] == ~across).all() and across.any()
 
 
 def test_missing_configuration_on_the_way_is_seen_near_singularities_only() -> None:
@@ -150,11 +124,6 @@ def test_ill_conditioned_point_on_the_way_is_not_linked() -> None:
     found = link(plane.surface, plane.edges, plane.candidates, measure(), None, probe)
     across = (plane.surface.vertices[plane.edges][:, :, 0] < 0.42).sum(axis=1) == 1
     assert (found[:, 0] == ~across).all()
-
-
-def test_no_link_without_two_configurations() -> None:
-    plane = Plane(lambda p: np.nan if p[0] > 0.9 else 0.0)
-    assert plane.linked()[:, 0].tolist() == [1 not in edge for edge in plane.edges.tolist()]
 
 
 def spiral(p: Array) -> float:
@@ -238,13 +207,6 @@ def test_cracks_are_on_shared_colors_and_colors_are_injective(
         assert set(crack.colors) <= shared
     per_vertex = np.sort(around_wrist_singularities.node_color, axis=1)
     assert not ((per_vertex[:, 1:] == per_vertex[:, :-1]) & (per_vertex[:, 1:] >= 0)).any()
-
-
-def test_no_speed_is_too_high() -> None:
-    # However strict the bound, a part is found that is short enough to keep it.
-    plane = Plane(lambda p: 1.9 * p[0])
-    strict = POLICY.model_copy(update={"base_step_rad": 1e-3, "step_per_length_rad_per_m": 0.1})
-    assert plane.linked(strict).all()
 
 
 @pytest.mark.parametrize(

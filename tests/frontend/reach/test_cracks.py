@@ -84,10 +84,6 @@ def test_noisy_caps(radius: float, position: list[float]) -> None:
     check(noisy_cap(1200, radius, position), most=15)
 
 
-def test_shipped_scene_with_cracks() -> None:
-    assert len(check(without_slivers(shipped("hemisphere_tilted", 1000)), most=15)) > 0
-
-
 def segments(scene: Scene) -> int:
     surface = build_surface(scene).surface
     solution = solve(decompose(surface), Options(deadline=Deadline.after(60), workers=2))
@@ -104,12 +100,6 @@ def test_the_minimum_of_the_box() -> None:
 @pytest.mark.parametrize("edge_mm", [8, 4, 2])
 def test_the_minimum_does_not_hang_on_the_size_of_triangles(edge_mm: float) -> None:
     assert segments(box(edge_mm, slivers=True)) == 3
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("edge_mm", [8, 4])
-def test_finer_boxes(edge_mm: float) -> None:
-    check(box(edge_mm, slivers=False), most=150)
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ modulo a full circle. A segment can be driven if some continuous positions of it
 from __future__ import annotations
 
 from itertools import product
-from math import inf, pi
+from math import pi
 from types import SimpleNamespace
 from typing import Any
 
@@ -74,22 +74,6 @@ def fewest_by_trial(angles: Array, lower: float, upper: float) -> int:
             end = max(end, here)
         parts, start = parts + 1, end
     return parts
-
-
-def test_a_color_inside_the_limits_is_left_as_it_is() -> None:
-    for angles in (np.linspace(-3, 3, 20), np.linspace(2, 5, 20)):  # the second passes pi
-        found = divided(angles, row(20), -CIRCLE, CIRCLE)
-        assert (found.names, found.color, found.cracks, found.winding) == (
-            ("branch",),
-            (0,),
-            (),
-            (),
-        )
-        assert not found.positions
-
-
-def test_joints_without_limits_divide_nothing() -> None:
-    assert len(divided(np.linspace(0, 20, 60), row(60), -inf, inf).names) == 1
 
 
 def test_a_row_beyond_the_limits() -> None:

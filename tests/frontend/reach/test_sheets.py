@@ -25,13 +25,12 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, Scene, build_surface
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, signed_task_determinant, tip_jacobian
-from cellcolor.frontend.build import build_prepared
+from cellcolor.frontend.build import StageClock, build_prepared
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, named, prepare
 from cellcolor.frontend.reach.sheets import Followed, sheets_of
-from cellcolor.frontend.reach.tracking import Solutions, Tracker
-from cellcolor.frontend.stage_clock import StageClock
+from cellcolor.frontend.reach.smooth import Solutions, Tracker
 
 pytestmark = pytest.mark.second
 
@@ -187,12 +186,6 @@ def test_a_cuspidal_arm_is_refused_with_both_configurations(
     assert wrapped(q - joints[vertex, own[first] % slots]).max() < 1e-6
     assert wrapped(q - joints[vertex, last % slots]).max() > 0.1
     assert (values > 0).all() or (values < 0).all()
-
-
-def test_out_of_reach_of_all_there_are_no_colors() -> None:
-    far = plate(dh_arms.urdf("passing"), "eaik", vertices=60, position_m=(5.0, 0.0, 0.0))
-    result = build_surface(far)
-    assert result.surface.colors == () and result.report.reachable == 0
 
 
 class Disc:

@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from shipped import ROBOTS, edited, shipped
+from shipped import shipped
 
 from cellcolor.arrays import Array
-from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
-from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.parts.shapes import grid_mesh, rectangle
 from cellcolor.frontend.reach.continuity import Coloring, color_nodes
 from cellcolor.frontend.reach.slivers import SliverReport, _cells, clean
-from cellcolor.frontend.setup import Setup, Slivers
+from cellcolor.frontend.setup import Slivers
 
 
 def row(*sets: str) -> tuple[Array, Array, Coloring]:
@@ -58,12 +54,6 @@ def test_small_cell_takes_a_part_of_its_own_colors() -> None:
 
 def test_neighbor_with_most_colors_is_preferred() -> None:
     assert cleaned(2, 0, "a", "a", "abc", "bc", "bc")[0] == ["a", "a", "bc", "bc", "bc"]
-
-
-def test_no_colors_are_added_and_none_invented() -> None:
-    # Neither neighbor has a part of "b": the cell stays as it is.
-    sets = ["ac", "ac", "b", "bc", "bc"]
-    assert cleaned(2, 0, *sets)[0] == sets
 
 
 def test_not_across_a_crack_of_the_colors_taken_over() -> None:
@@ -163,13 +153,6 @@ def test_like_looking_at_all_cells_again(
     assert report.given_up_cells == given_up
 
 
-def test_out_of_time() -> None:
-    edges, _, coloring = row("a", "a", "ab", "b", "b")
-    policy = Slivers(simplify_below_share=0.3)
-    with pytest.raises(OutOfTime):
-        clean(edges, coloring, np.ones(5), policy, Deadline.after(0.0))
-
-
 @pytest.fixture(scope="module")
 def results() -> dict[str, BuildResult]:
     """The tilted hemisphere without a policy and with the shipped one."""
@@ -222,22 +205,6 @@ def test_area_given_up_is_recorded(results: dict[str, BuildResult]) -> None:
     assert record["given_up_vertices"] == len(lost) > 0
     assert record["given_up_area_m2"] == pytest.approx(area)
     assert "uncovered" in str(policy.report)
-
-
-def test_side_policy_is_in_the_setup(results: dict[str, BuildResult]) -> None:
-    assert results["policy"].surface.meta["setup"]["slivers"] == {
-        "simplify_below_share": 0.01,
-        "uncover_below_share": 0.005,
-    }
-    assert results["raw"].surface.meta["setup"]["slivers"] is None
-
-
-def test_thresholds_are_checked(tmp_path: Path) -> None:
-    text = (ROBOTS / "ur5_polishing.toml").read_text()
-    (tmp_path / "s.toml").write_text(edited(text, simplify_below_share=1.5))
-    with pytest.raises(InputError, match="less than 1") as caught:
-        Setup.read(tmp_path / "s.toml")
-    assert caught.value.field == "slivers.simplify_below_share"
 
 
 def test_given_up_vertices_are_told_from_unreachable_ones(results: dict[str, BuildResult]) -> None:

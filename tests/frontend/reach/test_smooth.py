@@ -104,31 +104,10 @@ def test_a_jump_is_a_jump_however_short_the_edge(
     assert not followed(edge(length, turn), joint, determinant).smooth.any()
 
 
-@given(lengths, turns, st.floats(0.2, 0.8))
-def test_where_a_configuration_is_missing_beside_a_singularity(
-    length: float, turn: float, place: float
-) -> None:
-    """A gap is found that is wider than the probes are apart; half a millimeter here."""
-    assume(length + LEVER * turn > 0.005)
-    width = 0.001 / (length + LEVER * turn)
-
-    def determinant(at: Array) -> Array:
-        missing = np.abs(along(at, length, turn) - along(np.array([place]), length, turn)) < width
-        return np.where(missing, np.nan, 0.002)
-
-    assert not followed(edge(length, turn), lambda at: 0.1 * at, determinant).smooth.any()
-
-
 def along(at: Array, length: float, turn: float) -> Array:
     """The part of an edge's whole change of pose up to parts of its way."""
     angle = np.arctan2(at * np.sin(turn), 1 - at + at * np.cos(turn))
     return np.asarray((length * at + LEVER * angle) / (length + LEVER * turn))
-
-
-def test_a_turn_alone_is_followed() -> None:
-    """Half a circle of a joint on a hundredth of a millimeter, since the tool turns."""
-    found = followed(edge(1e-5, np.pi / 4), lambda at: np.pi * at)
-    assert found.smooth.all()
 
 
 def test_opposite_normals_have_no_motion_between_them() -> None:

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import pinocchio as pin
 import pytest
 from independent import arm_reason, clearances, possible_reasons
 from reasons import Reason
@@ -51,26 +50,6 @@ def test_reasons_agree_with_an_independent_loop(setup: Setup, scene: Varied, wea
     counts = result.report.candidates
     assert sum(counts.values()) == result.reasons.size
     assert sum(count > 0 for count in counts.values()) >= 6
-
-
-def test_configurations_put_the_tool_on_the_surface(robot: Robot, scene: Varied) -> None:
-    result = build_surface(scene(target_vertices=200, rpy_rad=(0.2, -0.4, 1.0)))
-    data, tip = robot.model.createData(), robot.model.getFrameId("tool_tip")
-    center = np.array([0.465, -0.15, -0.04])
-    rows, branches = np.nonzero(result.node_color >= 0)
-    assert len(rows) > 300
-    for row, branch in zip(rows, branches, strict=True):
-        pin.framesForwardKinematics(robot.model, data, result.configurations[row, branch])
-        pose, vertex = data.oMf[tip], result.surface.vertices[row]
-        assert np.allclose(pose.translation, vertex, atol=1e-9)
-        assert np.allclose(pose.rotation[:, 2], -(vertex - center) / 0.2, atol=1e-9)
-
-
-def test_locked_joint_stays_where_the_setup_says(scene: Varied) -> None:
-    result = build_surface(scene(setup={"locked_joint_6_rad": 0.7}, target_vertices=200))
-    solved = result.reasons != Reason.NO_SOLUTION
-    assert solved.sum() > 500
-    assert (result.configurations[solved][:, 5] == 0.7).all()
 
 
 def counts(result: BuildResult) -> dict[str, int]:

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from independent import shorter_way
 from reasons import Reason
-from shipped import SCENES, shipped
+from shipped import shipped
 from world import PAIRS, World
 
 from cellcolor.arrays import Array
@@ -117,21 +117,6 @@ def test_random_walks(name: str, vertices: int, count: int) -> None:
         assert prepared.scene.ground is not None
         exempt = prepared.setup.robot.may_touch_ground
         assert world.to_ground(prepared.scene.ground.height_m, exempt) > -0.0005
-
-
-@pytest.mark.parametrize(("name", "radius"), [("hemisphere_tilted", 0.105), ("wok", 0.2)])
-def test_deviation_from_the_sphere(name: str, radius: float) -> None:
-    """A mesh edge of length h leaves the sphere by its sagitta, h^2 / (8 r) for short edges."""
-    prepared = prepare(SCENES / f"{name}.toml")
-    edges, center = prepared.surface.edges(), np.array(prepared.scene.placement.position_m)
-    points, directions = along_edges(prepared.surface, edges, np.full(len(edges), 0.5))
-    depth = radius - np.linalg.norm(points - center, axis=1)
-    length = prepared.surface.lengths(edges)
-    assert depth == pytest.approx(length**2 / (8 * radius), rel=0.02)
-    assert depth.max() < 0.0006
-    # The interpolated normal is that of the sphere.
-    outward = (points - center) / np.linalg.norm(points - center, axis=1, keepdims=True)
-    assert -directions == pytest.approx(outward, abs=1e-9)
 
 
 def linked_edges(result: BuildResult, edges: Array) -> Array:

@@ -17,9 +17,9 @@ from cellcolor.data.instance import Instance
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.solvers.bounds.cover import color_regions, hard_cells, set_cover
-from cellcolor.solvers.bounds.crossings import enough_crossings
 from cellcolor.solvers.bounds.merged_surface import merge_cells
 from cellcolor.solvers.checked import solve
+from cellcolor.solvers.cpsat.dart_graph import enough_crossings
 from cellcolor.solvers.interface import Options
 from examples import examples
 

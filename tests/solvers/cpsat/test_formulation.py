@@ -25,14 +25,12 @@ from cellcolor.data.instance import Instance
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError, RefusedResult, TooLarge
 from cellcolor.lab.families import SMALL, planar_graph
-from cellcolor.lab.families import hub as random_hub
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import CompleteModel, complete_model
 from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT
 from cellcolor.solvers.cpsat.dart_graph import complete_graph
-from cellcolor.solvers.cpsat.drawing import sector_colors
 from cellcolor.solvers.cpsat.painting import Block, Painting
-from cellcolor.solvers.cpsat.sectors import painting_of_sectors, sector_graph
+from cellcolor.solvers.cpsat.sectors import painting_of_sectors, sector_colors, sector_graph
 from cellcolor.solvers.interface import Options
 from examples import examples
 
@@ -307,14 +305,6 @@ def exported_minimum(instance: Instance, folder: Path) -> str:
 @pytest.mark.parametrize("name", SCENES)
 def test_bare_ortools_solves_the_exported_scenes(name: str, tmp_path: Path) -> None:
     instance = Instance.read(INSTANCES / "scenes" / f"{name}.json")
-    known = solve(instance, Options())
-    assert known.status == "optimal"
-    assert exported_minimum(instance, tmp_path) == f"OPTIMAL {known.segments}"
-
-
-@pytest.mark.parametrize("leaves", [10, pytest.param(18, marks=pytest.mark.slow)])
-def test_bare_ortools_solves_exported_hubs(leaves: int, tmp_path: Path) -> None:
-    instance = random_hub(1, leaves, 3)
     known = solve(instance, Options())
     assert known.status == "optimal"
     assert exported_minimum(instance, tmp_path) == f"OPTIMAL {known.segments}"

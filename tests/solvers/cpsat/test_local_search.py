@@ -11,17 +11,13 @@ from dart_graphs import graph_of
 from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
-from library import INSTANCES
 from rooms import hub
 
-import cellcolor
 from cellcolor.checker.division import check_division
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
-from cellcolor.decomposition import decompose
-from cellcolor.lab.families import planar_graph, voronoi
-from cellcolor.solvers.cpsat.dart_graph import dart_graph, widened
-from cellcolor.solvers.cpsat.drawing import sector_colors
+from cellcolor.lab.families import planar_graph
+from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.local_search import Recoloring, recolor
 from cellcolor.solvers.cpsat.painting import (
     Block,
@@ -30,7 +26,7 @@ from cellcolor.solvers.cpsat.painting import (
     division_of,
     segments_of,
 )
-from cellcolor.solvers.cpsat.sectors import SectorGraph, painting_of_sectors, sector_graph
+from cellcolor.solvers.cpsat.sectors import SectorGraph, sector_colors, sector_graph
 from examples import examples
 
 SEEDS = st.integers(0, 10**6)
@@ -44,9 +40,9 @@ def whole(instance: Instance) -> Painting:
 
 def numbers(instance: Instance, seed: int, enough: int = 0) -> list[int]:
     """Segments of every cell painted whole, and of each better division, all of them legal."""
-    graph, start = graph_of(instance), whole(instance)
+    graph, start, regions = graph_of(instance), whole(instance), color_regions(instance)
     found = []
-    for painting in [start, *recolor(graph, start, Random(seed), enough, NEVER, 30)]:
+    for painting in [start, *recolor(graph, regions, start, Random(seed), enough, NEVER, 30)]:
         report = check_division(instance, division_of(graph, painting), seams=graph.seams)
         assert report.valid, report.problems
         found.append(report.segments)
@@ -81,7 +77,8 @@ def test_segments_are_counted_right(seed: int, cells: int, colors: int, rings: i
     instance = planar_graph(seed, cells, 2 * cells, colors)
     graph = graph_of(instance)
     sectors = sector_graph(graph, rings)
-    search = Recoloring(sectors, sector_colors(sectors, whole(instance)), Random(seed))
+    start = sector_colors(sectors, whole(instance))
+    search = Recoloring(sectors, color_regions(instance), start, Random(seed))
     for _ in range(60):
         search.move()
         assert all(
@@ -98,10 +95,10 @@ def test_segments_are_counted_right(seed: int, cells: int, colors: int, rings: i
 def test_without_rings_cells_stay_whole(seed: int) -> None:
     """Each division is legal and better all the same, and may be where the next search begins."""
     instance = planar_graph(seed, 12, 24, 4)
-    graph, painting = graph_of(instance), whole(instance)
+    graph, painting, regions = graph_of(instance), whole(instance), color_regions(instance)
     known = len(segments_of(graph, painting))
     for rings in (0, 1, 2):
-        for better in recolor(graph, painting, Random(seed), 0, NEVER, 10, rings):
+        for better in recolor(graph, regions, painting, Random(seed), 0, NEVER, 10, rings):
             painting = better
             report = check_division(instance, division_of(graph, painting), seams=graph.seams)
             assert report.valid and report.segments < known
@@ -115,16 +112,12 @@ def test_a_hub_is_cut_between_its_petals(petals: tuple[int, ...]) -> None:
     assert numbers(hub(*petals), 0)[-1] == minimum(hub(*petals))
 
 
-def test_a_surface_with_holes_and_cracks() -> None:
-    surface = voronoi(1, "annulus", 12, 20, 6, scattered=True, cracks=2, holes=2)
-    assert len(numbers(decompose(surface), 0)) > 1
-
-
 def test_a_seed_says_what_is_found() -> None:
     instance = planar_graph(3, 25, 50, 5)
     sectors = sector_graph(graph_of(instance), 1)
     start = sector_colors(sectors, whole(instance))
-    one, other, third = (Recoloring(sectors, start, Random(seed)) for seed in (1, 1, 2))
+    regions = color_regions(instance)
+    one, other, third = (Recoloring(sectors, regions, start, Random(seed)) for seed in (1, 1, 2))
     for _ in range(200):
         one.move()
         other.move()
@@ -141,23 +134,6 @@ def test_few_enough_segments_end_it() -> None:
 
 def test_no_time_leaves_what_there_was() -> None:
     instance = hub(0, 1, 0, 1)
+    graph, start, regions = graph_of(instance), whole(instance), color_regions(instance)
     with pytest.raises(OutOfTime):
-        next(recolor(graph_of(instance), whole(instance), Random(0), 0, Deadline.after(0), 30))
-
-
-def test_a_part_of_340_cells() -> None:
-    """By solving one window after another it had 18 segments in minutes (until 2026-11-24)."""
-    instance = cellcolor.read(INSTANCES / "hard" / "large_part_1.json")
-    assert isinstance(instance, Instance)
-    once = {edge.id: 1 for edge in instance.edges}
-    graph = dart_graph(instance, once, widened(instance, once, 2))
-    sectors = sector_graph(graph, 1)
-    painted = [min(graph.colors[cell]) for cell in sectors.cell]
-    search = Recoloring(sectors, painted, Random(0))
-    for _ in range(400):
-        search.move()
-    assert search.fewest < 18
-    division = canonical(graph, painting_of_sectors(sectors, search.best))
-    report = check_division(instance, division_of(graph, division), seams=graph.seams)
-    assert report.valid, report.problems
-    assert report.segments <= search.fewest
+        next(recolor(graph, regions, start, Random(0), 0, Deadline.after(0), 30))

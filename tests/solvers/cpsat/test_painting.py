@@ -9,7 +9,6 @@ import pytest
 from dart_graphs import graph_of
 from hypothesis import given
 from hypothesis import strategies as st
-from mutants import change
 from rooms import graph as cells_of
 from rooms import hub, petal_cells
 
@@ -56,29 +55,6 @@ def test_any_painting_has_a_scheme(seed: int, cells: int, colors: int) -> None:
     assert report.segments is not None and report.segments <= segments
 
 
-def test_a_canonical_painting_has_no_idle_cuts_and_no_single_darts() -> None:
-    """Three red darts in two sub-cells become one; a blue one alone beside them goes."""
-    instance = hub(RED, RED, RED, BLUE)
-    graph = graph_of(instance)
-    hub_darts = graph.lists[0]
-    outer = [graph.darts[dart].twin for dart in hub_darts]
-    colors = (RED, RED, RED, BLUE)
-    painting = [
-        [Block(RED, set(hub_darts[:2])), Block(RED, {hub_darts[2]}), Block(BLUE, {hub_darts[3]})],
-        *([Block(color, {dart})] for color, dart in zip(colors, outer, strict=True)),
-    ]
-    result = canonical(graph, painting)
-    assert [(block.color, block.darts) for block in result[0]] == [(RED, set(hub_darts[:3]))]
-    assert result[4] == [Block(BLUE, set())]
-
-
-def test_a_canonical_painting_joins_what_shows_one_color() -> None:
-    instance = hub(RED, RED)
-    graph = graph_of(instance)
-    result = canonical(graph, [[Block(RED, set())] for _ in instance.cells])
-    assert result[0] == [Block(RED, set(graph.lists[0]))]
-
-
 BOTH = RED, BLUE
 SMALL = {
     "hub": hub(RED, RED, RED, RED, BLUE),
@@ -108,30 +84,3 @@ def every_division_becomes_a_scheme(instance: Instance) -> bool:
 @pytest.mark.parametrize("name", SMALL)
 def test_every_division_becomes_a_scheme(name: str) -> None:
     assert every_division_becomes_a_scheme(SMALL[name])
-
-
-@pytest.mark.parametrize(
-    ("step", "old", "new", "name"),
-    [
-        ("a single dart goes", "if single is not None:", "if False:", "hub"),
-        (
-            "successive darts",
-            "self._unite(self.block_of[dart], self.block_of[following])",
-            "pass",
-            "hub",
-        ),
-        (
-            "no chain connects them",
-            "if len(self._loops) > 1:\n            self._merge_unconnected()",
-            "pass",
-            "two loops",
-        ),
-        ("both sides show one color", "if one.color == its.color and", "if False and", "hub"),
-    ],
-)
-def test_every_step_is_needed(
-    step: str, old: str, new: str, name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The four steps of docs/semantics/schemes.md, each taken out once."""
-    change(monkeypatch, "cellcolor.solvers.cpsat.painting", old, new)
-    assert not every_division_becomes_a_scheme(SMALL[name]), step

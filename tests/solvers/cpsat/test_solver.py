@@ -23,8 +23,8 @@ from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.cpsat.dart_graph import split
 from cellcolor.solvers.cpsat.painting import division_of
 from cellcolor.solvers.cpsat.part import Part
-from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.interface import Options, Start
+from cellcolor.solvers.interruptible import Runner
 from examples import examples
 
 RED, BLUE = 0, 1
@@ -53,12 +53,6 @@ def test_surface_may_beat_paper(name: str, paper: int, surface: int) -> None:
     assert not found.proved_for_surface
     found = solve(instance, Options(search_space="surface", strands=2))
     assert (found.status, found.segments, found.proved_for_surface) == ("optimal", surface, True)
-
-
-def test_three_loops_need_more_strands_than_two_at_a_time_would_get() -> None:
-    instance = Instance.read(PAPER / "three-loops.json")
-    found = solve(instance, Options())
-    assert (found.status, found.segments) == ("optimal", 4)
 
 
 def test_without_a_proof_for_the_surface_nothing_is_called_optimal() -> None:
@@ -104,15 +98,6 @@ def test_a_closed_surface_of_one_cell() -> None:
     assert {scheme_key(s) for s in schemes} == {
         (frozenset({(color, frozenset())}),) for color in (RED, BLUE)
     }
-
-
-def test_progress_reports_the_best_and_the_bound() -> None:
-    seen: list[tuple[int | None, int]] = []
-    instance = Instance.read(PAPER / "split-cell.json")
-    CpSatSolver().minimize(instance, Options(), lambda best, bound: seen.append((best, bound)))
-    # A division is there from the beginning: every cell painted whole.
-    assert all(found is not None and bound <= 2 <= found for found, bound in seen)
-    assert seen[-1] == (2, 2)
 
 
 def test_progress_comes_closer_and_never_passes_the_minimum() -> None:

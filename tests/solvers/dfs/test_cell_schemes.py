@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import combinations, product
 from math import comb
 
 import pytest
-from exhaustive_minima import any_scheme
-from library import PAPER
 
-from cellcolor.data.cells_and_edges import Cell
-from cellcolor.data.instance import Instance
-from cellcolor.solvers.dfs import ReferenceSolver
 from cellcolor.solvers.dfs.cell_schemes import CellScheme, cell_schemes
 from cellcolor.solvers.dfs.graph import GraphCell
 from cellcolor.solvers.dfs.search import zeros_fit
-from cellcolor.solvers.interface import Options
-
-SOLVER = ReferenceSolver()
 
 
 def divisions(size: int) -> set[frozenset[frozenset[int]]]:
@@ -36,58 +27,12 @@ def divisions(size: int) -> set[frozenset[frozenset[int]]]:
     }
 
 
-def code(size: int, subcells: Sequence[Sequence[int]]) -> str:
-    """The paper's code of a cell's division (section IV-C), places of darts for each sub-cell.
-
-    ``0`` and ``1`` are states, brackets hold the codes of sub-cells inside the outermost one:
-    ``1(11)1`` is the paper's ``1××1``. Zeros stand outside of the brackets where they can.
-    """
-    block = {dart: own for own in subcells for dart in own}
-    text = ""
-    for dart in range(size):
-        own = block.get(dart)
-        inner = own is not None and own is not block[min(block)]
-        text += "(" * (inner and dart == min(own or ()))
-        text += "0" if own is None else "1"
-        text += ")" * (inner and dart == max(own or ()))
-    return text
-
-
 @pytest.mark.parametrize("edges", range(1, 7))
 def test_divisions_of_a_lone_cell(edges: int) -> None:
     """Catalan(n) + n, of which one block or none are 2^n."""
     found = divisions(edges)
     assert len(found) == comb(2 * edges, edges) // (edges + 1) + edges
     assert sum(len(division) == 1 for division in found) == 2**edges
-
-
-def test_codes_of_simple_cells_are_binary() -> None:
-    """Figure "Possible divisions of a 3-edge cell": eight codes, no ×."""
-    found = {code(3, [sorted(darts) for darts in division]) for division in divisions(3)}
-    assert found == {f"{number:03b}" for number in range(8)}
-
-
-def test_codes_of_a_four_edge_cell() -> None:
-    """The sub-cells of ××11 and 11×× are the same division, and so are those of ×11× and 1××1."""
-    found = {
-        code(4, [sorted(darts) for darts in sorted(division, key=min)] if any(division) else [])
-        for division in divisions(4)
-    }
-    assert found == {f"{number:04b}" for number in range(16)} | {"11(11)", "1(11)1"}
-
-
-@pytest.mark.parametrize("edges", range(1, 7))
-def test_schemes_of_a_lone_cell_in_two_colors(edges: int) -> None:
-    """With colors: rules 2 to 4, round the cyclic list's end too (red, blue and red again)."""
-    cell = Cell(0, (0, 1), (tuple(range(1, edges + 1)),))
-    alone = GraphCell(0, (0, 1), cell.loops[0], (frozenset((0, 1)),) * edges)
-    found = [frozenset(scheme.subcells) for scheme in cell_schemes(alone, (None,) * edges)]
-    expected = {
-        frozenset(local.blocks)
-        for painted in product((None, 0, 1), repeat=edges)
-        for local in any_scheme(cell, painted)
-    }
-    assert len(found) == len(set(found)) and set(found) == expected
 
 
 def schemes_of_a_lone_cell(edges: int, colors: int) -> int:
@@ -149,18 +94,3 @@ def test_zeros_that_show_one_color_on_both_sides_do_not_fit() -> None:
             GraphCell(i, (0, 1), (dart,), (frozenset(joinable),)) for i, dart in enumerate((1, -1))
         ]
         assert zeros_fit(cells, painted) == fits
-
-
-def test_brackets_nest_and_leave_zeros_outside() -> None:
-    assert code(6, [(0, 5), (1, 4), (2, 3)]) == "1(1(11)1)1"
-    assert code(7, [(0, 6), (2, 4)]) == "10(101)01"
-    assert code(3, [()]) == "000"
-
-
-def test_the_cell_that_must_be_split() -> None:
-    """Its live darts face blue, blue, red, red: two of each must continue into it."""
-    instance = Instance.read(PAPER / "split-cell.json")
-    (division,) = SOLVER.optimal_schemes(instance, Options(), 2)
-    darts = [d for d in instance.cells[2].loops[0] if instance.joinable(d)]
-    places = [tuple(darts.index(d) for d in s.darts) for s in division[2].subcells]  # type: ignore[arg-type]
-    assert code(len(darts), places) == "11(11)"

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import random
-from dataclasses import replace
 
 import pytest
 from library import PAPER
 from reference import COVERED, SOLVER, SURFACE, segments
-from relabelled import turned_loop
+from relabelled import renamed, turned
 
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell, Edge
@@ -18,7 +17,6 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.lab.families import hub, planar_graph
 from cellcolor.solvers.dfs import ReferenceSolver
-from cellcolor.solvers.dfs.graph import Graph
 from cellcolor.solvers.interface import Answer, Options
 
 BOTH = pytest.mark.parametrize("solver", [SOLVER, COVERED], ids=["dfs", "dfs-cover"])
@@ -62,62 +60,15 @@ def _edges(count: int) -> tuple[Edge, ...]:
 
 
 @BOTH
-def test_parts_are_independent(solver: ReferenceSolver) -> None:
-    """Twice the same graph: twice the segments, and every pair of its schemes."""
-    one = Instance.read(PAPER / "crossing-zeros.json")
-    shift = len(one.cells)
-    cells = [
-        Cell(
-            c.id + shift,
-            c.colors,
-            tuple(tuple(d + (9 if d > 0 else -9) for d in x) for x in c.loops),
-        )
-        for c in one.cells
-    ]
-    edges = [Edge(e.id + 9, e.left + shift, e.right + shift) for e in one.edges]
-    twice = Instance("twice", one.colors, (*one.cells, *cells), (*one.edges, *edges))
-    answer = solver.minimize(twice, Options())
-    assert segments(twice, answer) == answer.lower_bound == 4
-    assert schemes(solver, twice, 4) == 3 * 3
-
-
-@BOTH
 @pytest.mark.parametrize("seed", range(12))
 def test_names_do_not_matter(solver: ReferenceSolver, seed: int) -> None:
     """Cells, colors and edges renamed, loops begun elsewhere: same minimum, as many schemes."""
     instance = planar_graph(seed, 5, 8, 3, self_edges=seed % 2 == 0)
     rng = random.Random(seed)
-    cell_name, color_name = rng.sample(range(5), 5), rng.sample(range(3), 3)
-    edge_name = dict(zip(range(1, 9), rng.sample(range(1, 9), 8), strict=True))
-
-    def dart(old: int) -> int:
-        return edge_name[abs(old)] if old > 0 else -edge_name[abs(old)]
-
-    cells = [
-        Cell(
-            cell_name[c.id],
-            tuple(sorted(color_name[k] for k in c.colors)),
-            tuple(tuple(dart(d) for d in turned_loop(loop, rng)) for loop in c.loops),
-        )
-        for c in instance.cells
-    ]
-    edges = [
-        Edge(
-            edge_name[e.id],
-            cell_name[e.left],
-            cell_name[e.right],
-            None if e.colors is None else tuple(sorted(color_name[k] for k in e.colors)),
-        )
-        for e in instance.edges
-    ]
-    renamed = replace(
-        instance,
-        cells=tuple(sorted(cells, key=lambda c: c.id)),
-        edges=tuple(sorted(edges, key=lambda e: e.id)),
-    )
+    other = turned(renamed(instance, rng), rng)
     best = segments(instance, solver.minimize(instance, Options()))
-    assert segments(renamed, solver.minimize(renamed, Options())) == best
-    assert schemes(solver, renamed, best) == schemes(solver, instance, best)
+    assert segments(other, solver.minimize(other, Options())) == best
+    assert schemes(solver, other, best) == schemes(solver, instance, best)
 
 
 @BOTH
@@ -253,27 +204,14 @@ def test_bound_in_surface_is_not_the_minimum_of_two_strands() -> None:
     assert answer.lower_bound == 2
 
 
-def test_seams_have_enough_strands() -> None:
-    annulus = Instance.read(PAPER / "annulus.json")  # 4 live darts around, 1 inside
-    assert Graph(annulus, 1).sufficient_seam_strands(1) == [5 // 2 - 1]
-    assert Graph(annulus, 2).sufficient_seam_strands(1) == [10 // 2 - 1]
-    three = Instance.read(PAPER / "three-loops.json")  # 8 live darts, then 8 + 2 * 4
-    assert Graph(three, 1).sufficient_seam_strands(0) == [4, 8]
-
-
 @pytest.mark.parametrize(
-    ("name", "cell", "minimum"),
-    [("annulus", 1, 3), pytest.param("three-loops", 0, 4, marks=pytest.mark.slow)],
+    ("name", "minimum"),
+    [("annulus", 3), pytest.param("three-loops", 4, marks=pytest.mark.slow)],
 )
-def test_order_of_loops_does_not_matter(name: str, cell: int, minimum: int) -> None:
+def test_order_of_loops_does_not_matter(name: str, minimum: int) -> None:
     instance = Instance.read(PAPER / f"{name}.json")
     for seed in range(4):
-        rng = random.Random(seed)
-        loops = list(instance.cells[cell].loops)
-        rng.shuffle(loops)
-        cells = list(instance.cells)
-        cells[cell] = replace(cells[cell], loops=tuple(turned_loop(loop, rng) for loop in loops))
-        other = replace(instance, cells=tuple(cells))
+        other = turned(instance, random.Random(seed))
         assert segments(other, COVERED.minimize(other, Options())) == minimum
 
 
