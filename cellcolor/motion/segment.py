@@ -15,8 +15,7 @@ from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
 from cellcolor.motion.courses import Course, laid_out
 from cellcolor.motion.following import joint_space
-from cellcolor.motion.refusing import ArmRefusals
-from cellcolor.motion.small_triangles import CornerStates
+from cellcolor.motion.small_triangles import ArmRefusals, CornerStates
 from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
 from cellcolor.motion.windings import steps_of, walls_of
 from cellcolor.tool_paths.cover import Bounds, Covered, cover

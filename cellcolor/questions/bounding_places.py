@@ -16,11 +16,10 @@ from scipy.sparse import csr_array, hstack, identity
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import Deadline
-from cellcolor.frontend.build import judged_at_vertices
+from cellcolor.frontend.build import StageClock, judged_at_vertices
 from cellcolor.frontend.links import continuous_along
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.continuity import regions
-from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.questions.placements import SAME_SHARE
 
 _SLACK = 1e-6  # of a bound in floating point

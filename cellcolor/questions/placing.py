@@ -19,13 +19,12 @@ from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
-from cellcolor.frontend.build import build_prepared
+from cellcolor.frontend.build import StageClock, build_prepared
 from cellcolor.frontend.contact.engine import meet
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 from cellcolor.frontend.parts.remeshing import fold_angle, folds, length_for, remeshed
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.questions.bounding_places import bounds_of
 from cellcolor.questions.placements import VARIABLES, PlacedMinimum, Pose, Ranges
 from cellcolor.solvers import checked
