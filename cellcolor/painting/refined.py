@@ -25,7 +25,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
-from cellcolor.checker.whole_subcells import WholeSubCell, whole_subcells
+from cellcolor.checker.dart_lists import WholeSubCell, whole_subcells
 from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.solution import CellDivision
 from cellcolor.data.surface import Crack, LabelledSurface

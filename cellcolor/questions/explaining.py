@@ -21,11 +21,6 @@ from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import BuildResult, StageClock, build_prepared
 from cellcolor.frontend.prepared import PreparedScene
-<<<<<<< HEAD
-from cellcolor.frontend.relaxing import TOOL_LENGTH, Relaxation, relaxations_of, without
-from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.questions.answers import Explanation, RelaxedMinimum
-=======
 from cellcolor.frontend.relaxing import (
     TOOL_LENGTH,
     Relaxation,
@@ -35,7 +30,6 @@ from cellcolor.frontend.relaxing import (
     without,
 )
 from cellcolor.questions.answers import Explanation, RelaxedMinimum
->>>>>>> main
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 

@@ -28,11 +28,7 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
-<<<<<<< HEAD
-from cellcolor.frontend.build import build_prepared, judged_at_vertices
-=======
-from cellcolor.frontend.build import StageClock, build_prepared
->>>>>>> main
+from cellcolor.frontend.build import StageClock, build_prepared, judged_at_vertices
 from cellcolor.frontend.contact.engine import meet
 from cellcolor.frontend.links import continuous_along
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
@@ -40,13 +36,7 @@ from cellcolor.frontend.parts.remeshing import fold_angle, folds, length_for, re
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import regions
 from cellcolor.frontend.scene import Scene
-<<<<<<< HEAD
-from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.questions.placements import SAME_SHARE, VARIABLES, PlacedMinimum, Pose, Ranges
-=======
-from cellcolor.questions.placing import bounds_of
-from cellcolor.questions.placements import VARIABLES, PlacedMinimum, Pose, Ranges
->>>>>>> main
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 

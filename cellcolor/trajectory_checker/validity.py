@@ -17,9 +17,8 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.deadline import Deadline
-from cellcolor.frontend.arm.body import Body
+from cellcolor.frontend.arm.body import Body, Shape
 from cellcolor.frontend.arm.kinematics import Poses, forward
-from cellcolor.frontend.arm.shape import Shape
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.validity import Judge
 from cellcolor.frontend.reach.validity_tests import Workplace
