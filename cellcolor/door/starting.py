@@ -32,8 +32,14 @@ from cellcolor.door.starting_choices import (
 )
 from cellcolor.door.starting_texts import MARK, SCENE, SETUP, TOOL
 from cellcolor.errors import InputError, naming
-from cellcolor.files.paths import path_of
-from cellcolor.files.writing import FileKind, Output, check_output, is_folder_or_nothing, write
+from cellcolor.files.writing import (
+    FileKind,
+    Output,
+    check_output,
+    is_folder_or_nothing,
+    path_of,
+    write,
+)
 
 if TYPE_CHECKING:
     from cellcolor.frontend.arm.robot import Robot
