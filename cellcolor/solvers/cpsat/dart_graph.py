@@ -121,8 +121,10 @@ def widened(
     widths: list[int] = []
     for own in _loops(instance):
         darts = sum(strands[abs(dart)] for loop in own for dart in loop)
-        enough = max(0, darts // 2 - (len(own) == 2))
-        widths += [enough if most is None else min(enough, most) for _ in own[1:]]
+        for _ in own[1:]:
+            enough = max(0, darts // 2 - (len(own) == 2))
+            widths.append(enough if most is None else min(enough, most))
+            darts += 2 * enough  # on both sides of this seam
     if sum(widths) > MOST_STRANDS:
         message = f"{sum(widths)} strands of seams, {MOST_STRANDS} are the most"
         raise TooLarge(f"The model was not built: it would need {message}.")
