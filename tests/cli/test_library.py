@@ -12,7 +12,7 @@ from commands import json_lines, run
 import cellcolor
 from cellcolor.data.imcgs import read_imcgs
 from cellcolor.data.library_index import LibraryIndex
-from cellcolor.door.shipped import Library
+from cellcolor.door.installed import Library
 
 Capture = pytest.CaptureFixture[str]
 INDEX = cellcolor.library().index
