@@ -6,6 +6,7 @@ import json
 import re
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import dh_arms
 import numpy as np
@@ -32,6 +33,11 @@ from cellcolor.motion.posture import joint_room
 Capture = pytest.CaptureFixture[str]
 
 
+def first_is_quick(*rows: Any) -> list[Any]:
+    """Parameters of a test that takes seconds; all but the first wait for the second stage."""
+    return [rows[0], *(pytest.param(*row, marks=pytest.mark.second) for row in rows[1:])]
+
+
 @pytest.fixture
 def plate(tmp_path: Path) -> Path:
     """A plate of 160 x 120 mm with a low hump, in millimeters, as its file's origin has it."""
@@ -46,7 +52,8 @@ def plate(tmp_path: Path) -> Path:
     return file
 
 
-@pytest.mark.parametrize(("arm", "family"), [("ur5", "ur"), ("kr6", "eaik")])
+@pytest.mark.second
+@pytest.mark.parametrize(("arm", "family"), first_is_quick(("kr6", "eaik"), ("ur5", "ur")))
 def test_family_flange_place_and_home_are_found(
     arm: str, family: str, plate: Path, tmp_path: Path
 ) -> None:
@@ -84,6 +91,7 @@ def test_links_that_overlap_in_every_posture_are_found_before_a_place_is_sought(
     assert any("link_4 and link_6 overlap" in note for note in made.notes)
 
 
+@pytest.mark.second
 @settings(deadline=None, max_examples=50)
 @given(
     st.tuples(*[st.floats(-3.2, 3.2)] * 3),
@@ -121,6 +129,7 @@ def test_an_arm_with_an_offset_wrist_is_known(tmp_path: Path) -> None:
     assert json.loads(arm_of(file, None, "tip", tmp_path, {}).keys["family"]) == "offset-wrist"
 
 
+@pytest.mark.second
 def test_ready_to_plan(plate: Path, tmp_path: Path, capsys: Capture) -> None:
     folder = tmp_path / "new"
     assert run("new", plate, ROBOTS / "ur5.urdf", "-o", folder) == 0
@@ -199,14 +208,16 @@ def new(capsys: Capture, part: Path, arm: Path, folder: Path, *options: str) -> 
     return capsys.readouterr().out
 
 
+@pytest.mark.second
+@pytest.mark.second
 @pytest.mark.parametrize(
     ("options", "flipped", "faces"),
-    [
-        ((), False, "down"),
+    first_is_quick(
         (("--outside", "flip"), True, "up"),
+        ((), False, "down"),
         (("--outside", "toward"), True, "up"),
         (("--outside", "away"), False, "down"),
-    ],
+    ),
 )
 def test_a_sheet_wound_inside_out(
     options: tuple[str, ...],
@@ -256,8 +267,11 @@ def shell(folder: Path) -> Path:
     return folder / "shell.stl"
 
 
+@pytest.mark.second
+@pytest.mark.second
 @pytest.mark.parametrize(
-    ("options", "side"), [((), "up"), (("--outside", "away"), "down"), (("--cover", "all"), "both")]
+    ("options", "side"),
+    first_is_quick(((), "up"), (("--outside", "away"), "down"), (("--cover", "all"), "both")),
 )
 def test_one_side_of_a_shell(
     options: tuple[str, ...], side: str, tmp_path: Path, capsys: Capture
@@ -313,7 +327,9 @@ def on_rail(tmp_path: Path) -> Path:
     return file
 
 
-@pytest.mark.parametrize(("options", "at"), [((), 0.0), (("--fix", "rail_joint=0.4"), 0.4)])
+@pytest.mark.parametrize(
+    ("options", "at"), first_is_quick((("--fix", "rail_joint=0.4"), 0.4), ((), 0.0))
+)
 def test_an_arm_on_a_rail_stands_still(
     options: tuple[str, ...],
     at: float,
@@ -330,9 +346,11 @@ def test_an_arm_on_a_rail_stands_still(
     assert (vertices.min(axis=0) + vertices.max(axis=0))[1] / 2 == pytest.approx(at)
 
 
+@pytest.mark.second
 @pytest.mark.parametrize(
     ("fix", "message"),
     [
+        ("rail_joint=0 --fix rail_joint=1", "--fix: rail_joint is given twice"),
         ("rail_joint=4", "4 is outside the joint's limits"),
         ("rail=0.4", "robot.fixed_joints.rail: no such joint"),
         ("rail_joint", "'rail_joint' is not JOINT=POSITION"),
@@ -346,7 +364,7 @@ def test_an_arm_on_a_rail_stands_still(
 def test_a_joint_that_cannot_stand_there(
     fix: str, message: str, plate: Path, on_rail: Path, tmp_path: Path, capsys: Capture
 ) -> None:
-    assert run("new", plate, on_rail, "-o", tmp_path / "new", "--fix", fix) == 2
+    assert run("new", plate, on_rail, "-o", tmp_path / "new", "--fix", *fix.split()) == 2
     assert message in capsys.readouterr().err
     assert not (tmp_path / "new").exists()
 
@@ -363,7 +381,9 @@ def test_under_an_arm_that_hangs(plate: Path, tmp_path: Path) -> None:
     assert 1.9 < Scene.read(made.scene).placement.position_m[2] < 2.7
 
 
-@pytest.mark.parametrize(("yaw", "turned"), [(90, True), (180, False), (-90, True), (0, True)])
+@pytest.mark.parametrize(
+    ("yaw", "turned"), first_is_quick((90, True), (180, False), (-90, True), (0, True))
+)
 def test_an_upright_part_is_turned_to_the_robot(
     yaw: float, turned: bool, plate: Path, tmp_path: Path, capsys: Capture
 ) -> None:
@@ -376,6 +396,7 @@ def test_an_upright_part_is_turned_to_the_robot(
     assert np.allclose(normals.mean(axis=0)[[0, 1]], [-1, 0], atol=0.1)
 
 
+@pytest.mark.second
 def test_the_home_is_over_the_part_and_well_conditioned(plate: Path, tmp_path: Path) -> None:
     made = cellcolor.new(plate, ROBOTS / "ur5e.urdf", tmp_path / "new")
     prepared = prepare(made.scene)
@@ -405,11 +426,3 @@ def test_a_tool_of_ones_own(plate: Path, tmp_path: Path) -> None:
     assert not Scene.read(made.scene).setup.constraints.force
     with pytest.raises(InputError, match="tip link"):
         cellcolor.new(plate, ROBOTS / "ur5.urdf", tmp_path / "other", tool=tool)
-
-
-def test_a_joint_stands_in_one_place(
-    plate: Path, on_rail: Path, tmp_path: Path, capsys: Capture
-) -> None:
-    twice = ("--fix", "rail_joint=0", "--fix", "rail_joint=1")
-    assert run("new", plate, on_rail, "-o", tmp_path / "new", *twice) == 2
-    assert "--fix: rail_joint is given twice" in capsys.readouterr().err
