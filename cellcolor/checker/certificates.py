@@ -20,13 +20,13 @@ from cellcolor.checker.crossing_segments import WORK, TwoRegions
 from cellcolor.checker.groups import ColorRegion, Groups
 from cellcolor.checker.plan_search import Conflict, PlanSearch
 from cellcolor.checker.proof import BudgetExceeded, Proof, Refused, few
-from cellcolor.data.bound_kinds import (
+from cellcolor.data.bounds import (
+    Bound,
     CertifiedCells,
     CertifiedPart,
     CertifiedParts,
     certificate_of,
 )
-from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError

@@ -1,9 +1,11 @@
-"""From a scene to a labelled surface."""
+"""From a scene to a labelled surface, stage by stage."""
 
 from __future__ import annotations
 
 import importlib.metadata
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from os import PathLike
@@ -28,8 +30,44 @@ from cellcolor.frontend.reach.slivers import SliverReport, clean
 from cellcolor.frontend.reach.validity import Verdicts
 from cellcolor.frontend.report import BuildReport, report_on
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.version import __version__
+
+Progress = Callable[[str], None]
+"""Told the name of each stage as it begins."""
+
+
+class StageClock:
+    """What one build has spent its time on.
+
+    Attributes:
+        deadline: when to give up.
+        seconds: wall time of each timed stage, in the order in which they first ended; of a stage
+            that came several times, the sum.
+    """
+
+    def __init__(self, deadline: Deadline, progress: Progress | None) -> None:
+        self.deadline, self._progress = deadline, progress
+        self.seconds: dict[str, float] = {}
+
+    def begin(self, stage: str) -> None:
+        """A stage begins.
+
+        Raises:
+            OutOfTime: the deadline has come.
+        """
+        self.deadline.check()
+        if self._progress is not None:
+            self._progress(stage)
+
+    @contextmanager
+    def timed(self, stage: str) -> Iterator[None]:
+        """A stage from its beginning to its end; raises like :meth:`begin`."""
+        self.begin(stage)
+        started = time.perf_counter()
+        yield
+        spent = time.perf_counter() - started
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + spent
+
 
 TURN_NOT_DEFINED = "turn not defined"
 """The reason at a vertex where the setup's rule for the tool's turn says nothing."""

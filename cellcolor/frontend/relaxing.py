@@ -19,14 +19,12 @@ import numpy as np
 
 from cellcolor.arrays import Mask
 from cellcolor.deadline import Deadline
-from cellcolor.frontend.build import BuildResult, colored
+from cellcolor.frontend.build import BuildResult, StageClock, colored
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.links import continuous_along, valid_along
 from cellcolor.frontend.prepared import PreparedScene, named
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.reach.validity import Verdicts
-from cellcolor.frontend.reach.validity_tests import JointLimits
-from cellcolor.frontend.stage_clock import StageClock
 
 Apply = Callable[[PreparedScene, float], PreparedScene]
 """A scene, and by how much the restriction is weakened, infinite if it is left out: the scene with
@@ -324,7 +322,7 @@ def built_asking_more(
     verdicts = _judged_there(strict, before, before.verdicts.valid, deadline)
     clock.begin("continuity")
     continuous = before.continuous & verdicts.valid[edges].all(axis=1)
-    if JointLimits.name in reasons:
+    if "joint limits" in reasons:
         rows = np.flatnonzero(continuous.any(axis=1))
         continuous[rows] &= continuous_along(prepared, edges[rows], verdicts, deadline)
     clock.begin("validity between vertices")

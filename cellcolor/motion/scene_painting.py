@@ -16,9 +16,8 @@ from cellcolor.arrays import Index, unit
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of
-from cellcolor.frontend.build import BuildResult, build_prepared
+from cellcolor.frontend.build import BuildResult, Progress, StageClock, build_prepared
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.motion.posture import color_costs, with_best_posture
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import Painted, paint

@@ -19,7 +19,7 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
-from cellcolor.frontend.build import BuildResult, build_prepared
+from cellcolor.frontend.build import BuildResult, StageClock, build_prepared
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.relaxing import (
     TOOL_LENGTH,
@@ -29,8 +29,7 @@ from cellcolor.frontend.relaxing import (
     relaxations_of,
     without,
 )
-from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.questions.explanation import Explanation, RelaxedMinimum
+from cellcolor.questions.answers import Explanation, RelaxedMinimum
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 

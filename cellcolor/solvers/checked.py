@@ -10,8 +10,7 @@ from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.dart_lists import MOST_DARTS
 from cellcolor.checker.division import Report, check_scheme, check_solution
 from cellcolor.checker.groups import regions_of_cells
-from cellcolor.data.bound_kinds import CertifiedCells, kind_of
-from cellcolor.data.bounds import Bound, greatest
+from cellcolor.data.bounds import Bound, CertifiedCells, greatest, kind_of
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import (
     Division,

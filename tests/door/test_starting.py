@@ -26,8 +26,7 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
-from cellcolor.motion.home import home_of
-from cellcolor.motion.limits import motion_of
+from cellcolor.motion.limits import home_of, motion_of
 from cellcolor.motion.posture import joint_room
 
 Capture = pytest.CaptureFixture[str]

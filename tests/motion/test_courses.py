@@ -19,8 +19,7 @@ from cellcolor.frontend.setup import Setup
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion import courses
 from cellcolor.motion.courses import Course, laid_out
-from cellcolor.motion.following import Followed, off_way
-from cellcolor.motion.samples import DISTANCE, Samples, even_places, sampled
+from cellcolor.motion.following import DISTANCE, Followed, Samples, even_places, off_way, sampled
 from cellcolor.tool_paths.cover import cover
 from cellcolor.tool_paths.registry import PATTERNS
 

@@ -14,8 +14,7 @@ from motions import Planned, planned_scene, ring_scene
 from cellcolor.deadline import NEVER
 from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.motion.following import follow, joint_space
-from cellcolor.motion.samples import sampled
+from cellcolor.motion.following import follow, joint_space, sampled
 from cellcolor.motion.segment import _refuse_what_is_beyond
 from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.windings import Steps, walls_of

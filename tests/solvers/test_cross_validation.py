@@ -137,7 +137,14 @@ def compare(instance: Instance) -> None:
         assert found == schemes, (solver, len(found), len(schemes))
 
 
-@pytest.mark.parametrize("path", KNOWN, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, marks=[pytest.mark.second] * (path.stem == "three-loops"))
+        for path in KNOWN
+    ],
+    ids=lambda path: path.stem,
+)
 def test_known_cases(path: Path) -> None:
     """Results that come with the cases, from a proof or another program."""
     instance = Instance.read(path)

@@ -25,13 +25,12 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, Scene, build_surface
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, signed_task_determinant, tip_jacobian
-from cellcolor.frontend.build import build_prepared
+from cellcolor.frontend.build import StageClock, build_prepared
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, named, prepare
 from cellcolor.frontend.reach.sheets import Followed, sheets_of
 from cellcolor.frontend.reach.smooth import Solutions, Tracker
-from cellcolor.frontend.stage_clock import StageClock
 
 pytestmark = pytest.mark.second
 
