@@ -24,8 +24,7 @@ from pathlib import Path
 
 from library_entries import INDEX, SOLUTIONS, Origin, entry_of, graph_files, graph_of
 
-from cellcolor.data.bound_kinds import KINDS, certificate_of
-from cellcolor.data.bounds import Bound, greatest
+from cellcolor.data.bounds import KINDS, Bound, certificate_of, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.library_index import LibraryIndex
 from cellcolor.data.solution import SearchSpace, Solution, Status

@@ -16,7 +16,7 @@ from typing import TypeVar
 from cellcolor.checker.certificates import BoundVerdict
 from cellcolor.checker.claimed_numbers import contradictions
 from cellcolor.checker.division import check_solution
-from cellcolor.data.bound_kinds import KINDS
+from cellcolor.data.bounds import KINDS
 from cellcolor.data.instance import Instance
 from cellcolor.data.library_index import (
     KnownRange,

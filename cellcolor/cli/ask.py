@@ -25,9 +25,8 @@ from cellcolor.cli.options import (
     ranges,
     shared,
 )
-from cellcolor.cli.progress import at_work
-from cellcolor.cli.terminal import complain, print_json, say, say_lines
-from cellcolor.data.prices import MOST_PRICE
+from cellcolor.cli.terminal import at_work, complain, print_json, say, say_lines
+from cellcolor.data.wording import MOST_PRICE
 
 _POSE = Numbers("a place is six numbers x,y,z,roll,pitch,yaw", 6)
 _SCENE = click.argument("scene", metavar="SCENE", type=INPUT)

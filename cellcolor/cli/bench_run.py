@@ -13,8 +13,7 @@ from typing import Any
 
 from cellcolor.cli.ending import Exit
 from cellcolor.cli.inputs import read_instance
-from cellcolor.cli.progress import progress_bar
-from cellcolor.cli.terminal import complain, say, say_lines, shown
+from cellcolor.cli.terminal import complain, progress_bar, say, say_lines, shown
 from cellcolor.data.wording import count
 from cellcolor.door.installed import find_file, library
 from cellcolor.errors import CellcolorError, InputError, SolverMissing

@@ -13,8 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cellcolor.cli.ending import INTERRUPTS
-from cellcolor.cli.progress import stages_of
-from cellcolor.cli.terminal import complain
+from cellcolor.cli.terminal import complain, stages_of
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.door.installed import extras_for

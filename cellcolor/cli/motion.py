@@ -22,8 +22,7 @@ from cellcolor.cli.options import (
     output_option,
     shared,
 )
-from cellcolor.cli.progress import at_work, stages_of
-from cellcolor.cli.terminal import complain, say, say_lines
+from cellcolor.cli.terminal import at_work, complain, say, say_lines, stages_of
 from cellcolor.data.wording import count, listed, segments_and_lift_offs
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError, naming

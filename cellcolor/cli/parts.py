@@ -21,8 +21,7 @@ from cellcolor.cli.options import (
     output_option,
     shared,
 )
-from cellcolor.cli.progress import at_work
-from cellcolor.cli.terminal import apart_from, print_json, say, say_lines
+from cellcolor.cli.terminal import apart_from, at_work, print_json, say, say_lines
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.writing import FileKind, Output, check_output, write

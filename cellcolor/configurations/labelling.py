@@ -22,7 +22,7 @@ from cellcolor.configurations.matching import (
     farthest,
     stays_within,
 )
-from cellcolor.data.joint_plan import JointPlan
+from cellcolor.data.plan import JointPlan
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline

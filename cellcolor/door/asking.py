@@ -1,4 +1,4 @@
-"""``cellcolor.tradeoff`` and ``explain``: what fewer lift-offs cover, and what costs a lift-off."""
+"""``cellcolor.tradeoff``, ``explain`` and ``place``: what saves a lift-off."""
 
 from __future__ import annotations
 
@@ -14,16 +14,15 @@ from cellcolor.door.asked import SearchAndTell, Work, begun, options_of
 from cellcolor.door.installed import extras_for
 from cellcolor.door.subject import Solvable, open_subject, scene_or_file
 from cellcolor.errors import CellcolorError, InputError
-from cellcolor.files.paths import path_of
-from cellcolor.files.writing import PNG, SVG, FileKind, Output, write
+from cellcolor.files.writing import PNG, SVG, FileKind, Output, path_of, write
 from cellcolor.lab.workers import Task, Workers, as_they_end
-from cellcolor.questions.front import Front
+from cellcolor.questions.answers import Front
 from cellcolor.questions.placements import PlacedMinimum, PlacementQuestion, Placements, Pose
 from cellcolor.questions.places import Place
 
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene
-    from cellcolor.questions.explanation import Explanation
+    from cellcolor.questions.answers import Explanation
 
 
 def tradeoff(
@@ -154,7 +153,7 @@ def save_map(found: Placements, path: str | PathLike[str]) -> None:
     file = path_of(path)
     kind = kind_of_map(file)
     with extras_for(f"a picture {file.suffix}"):
-        from cellcolor.pictures.placement_map import render_placements
+        from cellcolor.pictures.static import render_placements
 
         write([Output(file, kind, [render_placements(found, file.suffix[1:])])])
 

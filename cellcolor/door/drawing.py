@@ -18,8 +18,7 @@ from cellcolor.data.solution import Solution
 from cellcolor.door.installed import extras_for
 from cellcolor.door.subject import Result, Solvable, Subject, open_subject
 from cellcolor.errors import InputError, naming
-from cellcolor.files.paths import path_of
-from cellcolor.files.writing import HTML, PNG, SVG, FileKind, Output, write
+from cellcolor.files.writing import HTML, PNG, SVG, FileKind, Output, path_of, write
 from cellcolor.pictures.picture import Picture2D, Picture3D
 from cellcolor.pictures.registry import Picture, make_picture
 

@@ -11,11 +11,9 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from cellcolor.arrays import Array
-from cellcolor.data.joint_plan import ContactPath, JointPlan, VertexContacts
-from cellcolor.data.plan import Plan
+from cellcolor.data.plan import ContactPath, JointPlan, Plan, VertexContacts
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.data.trajectory import Trajectory
-from cellcolor.data.trajectory_csv import TrajectoryTable
+from cellcolor.data.trajectory import Trajectory, TrajectoryTable
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.door.installed import extras_for
 from cellcolor.door.subject import Subject

@@ -12,8 +12,7 @@ from cellcolor.checker.claimed_numbers import contradictions
 from cellcolor.checker.division import Report, check_solution
 from cellcolor.checker.groups import regions_on_surface
 from cellcolor.data.solution import Solution
-from cellcolor.data.trajectory import Trajectory
-from cellcolor.data.trajectory_csv import TrajectoryTable
+from cellcolor.data.trajectory import Trajectory, TrajectoryTable
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.data.wording import lift_offs_of
 from cellcolor.deadline import Deadline, TimeLimit
@@ -126,7 +125,7 @@ def judge_trajectory(
     built = subject.build()
     with extras_for("the front end"):
         from cellcolor.trajectory_checker.check import check_trajectory
-        from cellcolor.trajectory_checker.other_planners import completed
+        from cellcolor.trajectory_checker.stated import completed
         from cellcolor.trajectory_checker.tolerances import Limits
 
     report = progress or (lambda _: None)

@@ -14,7 +14,7 @@ from cellcolor.door.asked import Telling, Work, begun
 from cellcolor.door.drawing import Drawing
 from cellcolor.door.installed import extras_for
 from cellcolor.errors import InputError, naming
-from cellcolor.files.paths import path_of
+from cellcolor.files.writing import path_of
 
 if TYPE_CHECKING:
     from cellcolor.frontend.parts.inspection import Inspection
@@ -85,7 +85,7 @@ def repair(
 def draw_inspection(inspection: Inspection) -> Drawing:
     """The part with its faulty places marked."""
     with extras_for("a picture"):
-        from cellcolor.pictures.faulty_part import faulty_part
+        from cellcolor.pictures.mesh_picture import faulty_part
 
         return Drawing(faulty_part(inspection))
 

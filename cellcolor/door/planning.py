@@ -9,8 +9,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cellcolor.data.prices import check_share
-from cellcolor.data.wording import listed
+from cellcolor.data.wording import check_share, listed
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.door.asking import explain, place, tradeoff
 from cellcolor.door.installed import require_motion

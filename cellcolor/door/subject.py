@@ -1,4 +1,4 @@
-"""Anything that can be solved, checked or shown: opened once, with everything derived from it."""
+"""Whatever can be solved, checked or shown, opened once with all that follows; and its result."""
 
 from __future__ import annotations
 
@@ -22,8 +22,7 @@ from cellcolor.decomposition import Decomposition, decomposition_of, locate
 from cellcolor.decomposition.same_graph import wrong_cell
 from cellcolor.door.installed import extras_for, find_file
 from cellcolor.errors import InputError, naming
-from cellcolor.files.paths import path_of
-from cellcolor.files.writing import Output, write
+from cellcolor.files.writing import Output, path_of, write
 from cellcolor.questions.places import Place, chosen
 
 if TYPE_CHECKING:

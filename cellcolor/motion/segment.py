@@ -19,8 +19,7 @@ from cellcolor.motion.small_triangles import ArmRefusals, CornerStates
 from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
 from cellcolor.motion.windings import steps_of, walls_of
 from cellcolor.tool_paths.cover import Bounds, Covered, cover
-from cellcolor.tool_paths.overlap import Overlap
-from cellcolor.tool_paths.region import Segments
+from cellcolor.tool_paths.region import Overlap, Segments
 
 _SHORT = 2.0  # spacings; no place of such a stroke is as large as a footprint
 _SPARED = 0.005  # of the strokes' length, at most, of what is left out because it is short

@@ -21,8 +21,14 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition
 from cellcolor.decomposition.borders import Borders
 from cellcolor.errors import InputError, RefusedResult
-from cellcolor.painting.gates import choose_gates, steps_by_edge, subcells_on_surface
-from cellcolor.painting.refined import Refined, interpolated, unrefined
+from cellcolor.painting.refined import (
+    Refined,
+    choose_gates,
+    interpolated,
+    steps_by_edge,
+    subcells_on_surface,
+    unrefined,
+)
 from cellcolor.painting.trees import TooNarrow, Trees
 from cellcolor.union_find import UnionFind
 

@@ -13,8 +13,7 @@ import numpy as np
 
 from cellcolor.arrays import Index, Mask
 from cellcolor.checker.certificates import BoundVerdict
-from cellcolor.data.bound_kinds import certificate_of
-from cellcolor.data.bounds import Shown
+from cellcolor.data.bounds import Shown, certificate_of
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
@@ -22,8 +21,7 @@ from cellcolor.data.wording import count
 from cellcolor.decomposition import Decomposition
 from cellcolor.errors import InputError
 from cellcolor.pictures.mesh_picture import SurfaceView, draw_surface
-from cellcolor.pictures.palette import FAINT, WARNING
-from cellcolor.pictures.picture import Picture3D, VertexClass
+from cellcolor.pictures.picture import FAINT, WARNING, Picture3D, VertexClass
 from cellcolor.pictures.surface_pictures import OTHERS, fill_of
 
 

@@ -24,9 +24,9 @@ import numpy as np
 from ortools.sat.python import cp_model
 
 from cellcolor.data.cells_and_edges import OUTSIDE
-from cellcolor.data.prices import check_change_over
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import Crack, LabelledSurface
+from cellcolor.data.wording import check_change_over
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError

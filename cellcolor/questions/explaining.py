@@ -29,7 +29,7 @@ from cellcolor.frontend.relaxing import (
     relaxations_of,
     without,
 )
-from cellcolor.questions.explanation import Explanation, RelaxedMinimum
+from cellcolor.questions.answers import Explanation, RelaxedMinimum
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 

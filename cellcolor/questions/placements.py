@@ -8,8 +8,7 @@ from dataclasses import asdict, dataclass
 from math import floor, isfinite
 from typing import Any
 
-from cellcolor.data.prices import check_share
-from cellcolor.data.wording import count, lift_offs_of
+from cellcolor.data.wording import check_share, count, lift_offs_of
 from cellcolor.errors import InputError
 
 VARIABLES = ("x", "y", "z", "roll", "pitch", "yaw")

@@ -20,7 +20,7 @@ from ortools.sat.python import cp_model
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.questions.front import Front, FrontPoint
+from cellcolor.questions.answers import Front, FrontPoint
 from cellcolor.solvers import checked
 from cellcolor.solvers.bounds.cover import Region, color_regions
 from cellcolor.solvers.cpsat.complete_model import least_left_out

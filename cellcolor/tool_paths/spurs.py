@@ -7,9 +7,8 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline
 from cellcolor.mesh.triangle_mesh import grouped
-from cellcolor.tool_paths.distances import off_border, ways_from, with_room_inside
-from cellcolor.tool_paths.interface import Laid
-from cellcolor.tool_paths.triangles import Triangles
+from cellcolor.tool_paths.registry import Laid
+from cellcolor.tool_paths.triangles import Triangles, off_border, ways_from, with_room_inside
 
 _FAR = 0.75  # spacings: what is farther from the path has to be reached
 _STOP = 0.5  # spacings: a spur ends so far before what it reaches

@@ -35,7 +35,7 @@ from cellcolor.door.planned import KINDS
 from cellcolor.errors import InputError
 from cellcolor.exports.registry import EXPORTS
 from cellcolor.frontend.scene import Scene
-from cellcolor.questions.explanation import Explanation, RelaxedMinimum
+from cellcolor.questions.answers import Explanation, RelaxedMinimum
 from cellcolor.questions.placements import PlacedMinimum, Placements
 
 OTHER_ARMS = {name for name in KINDS if name.endswith((".mod", ".src", ".ls"))}

@@ -27,12 +27,13 @@ from meshes import surfaces
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
-from cellcolor.data.schemes import read_schemes, scheme_line
 from cellcolor.data.solution import (
     CellDivision,
     Solution,
     SubCell,
+    read_schemes,
     scheme_key,
+    scheme_line,
 )
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPaths

@@ -17,8 +17,7 @@ from hypothesis import given
 from library import INSTANCES
 from meshes import surfaces
 
-from cellcolor.data.bound_kinds import KINDS
-from cellcolor.data.bounds import Bound
+from cellcolor.data.bounds import KINDS, Bound
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance

@@ -30,8 +30,7 @@ from library import INSTANCES, PAPER
 from cellcolor.data.instance import Instance
 from cellcolor.data.library_index import LibraryIndex
 from cellcolor.data.plan import Plan
-from cellcolor.data.schemes import scheme_line
-from cellcolor.data.solution import Solution
+from cellcolor.data.solution import Solution, scheme_line
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory

@@ -14,7 +14,7 @@ from stand_in import stand_in
 import cellcolor
 from cellcolor.pictures.report_page.content import AnsweredScene, MotionReport
 from cellcolor.pictures.report_page.page import render_report
-from cellcolor.questions.explanation import Explanation, RelaxedMinimum
+from cellcolor.questions.answers import Explanation, RelaxedMinimum
 from cellcolor.questions.placements import PlacedMinimum, Placements
 
 NAME = "wok_obstacle"

@@ -11,7 +11,7 @@ class TestFaultyPart:
         from dirty import DIRTY
 
         import cellcolor
-        from cellcolor.pictures.faulty_part import faulty_part
+        from cellcolor.pictures.mesh_picture import faulty_part
 
         expected = {
             "duplicates": "faces there twice: 40",
@@ -40,9 +40,9 @@ class TestFaultyPart:
         from dirty import DIRTY
 
         import cellcolor
-        from cellcolor.pictures import faulty_part
+        from cellcolor.pictures import mesh_picture
 
-        monkeypatch.setattr(faulty_part, "_MOST", 100)
-        picture = faulty_part.faulty_part(cellcolor.inspect(DIRTY["crossing"]()))
+        monkeypatch.setattr(mesh_picture, "_MOST", 100)
+        picture = mesh_picture.faulty_part(cellcolor.inspect(DIRTY["crossing"]()))
         assert len(picture.layers[0].triangles) == 100
         assert picture.notes == ("100 of 832 faces are drawn.", "Usable unchanged.")

@@ -21,8 +21,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose, decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.pictures.mesh_picture import mesh_picture_parts
-from cellcolor.pictures.palette import mixed, paints_of
-from cellcolor.pictures.picture import ClassedMesh, Line
+from cellcolor.pictures.picture import ClassedMesh, Line, mixed, paints_of
 from cellcolor.pictures.surface_pictures import draw_cells, draw_color, draw_plan, draw_segments
 from cellcolor.pictures.topological_graph import draw_graph
 

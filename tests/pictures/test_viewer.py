@@ -13,7 +13,7 @@ from pages import DESKTOP, PHONE, opened
 from PIL import Image
 
 import cellcolor
-from cellcolor.pictures.palette import INK, paints_of
+from cellcolor.pictures.picture import INK, paints_of
 
 pytestmark = pytest.mark.second
 

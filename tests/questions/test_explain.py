@@ -30,7 +30,7 @@ from cellcolor.frontend.relaxing import (
     without,
 )
 from cellcolor.questions import explaining
-from cellcolor.questions.explanation import Explanation, RelaxedMinimum
+from cellcolor.questions.answers import Explanation, RelaxedMinimum
 from examples import examples
 
 pytestmark = pytest.mark.second

@@ -6,14 +6,12 @@ from collections import defaultdict
 
 import numpy as np
 
-from cellcolor.data.bound_kinds import kind_of
-from cellcolor.data.bounds import Bound
+from cellcolor.data.bounds import Bound, kind_of
 from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count, listed
 from cellcolor.pictures.report_page.content import Answers, Card, MotionReport
-from cellcolor.questions.explanation import Explanation
-from cellcolor.questions.front import Front
+from cellcolor.questions.answers import Explanation, Front
 from cellcolor.questions.placements import Placements
 from cellcolor.questions.set_ups import SetUpPlan
 

@@ -14,7 +14,7 @@ from random import Random
 
 from ortools.sat.python import cp_model
 
-from cellcolor.data.bound_kinds import CertifiedCrossing, CertifiedPart, CertifiedParts
+from cellcolor.data.bounds import CertifiedCrossing, CertifiedPart, CertifiedParts
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import ModelSize
 from cellcolor.deadline import Deadline
