@@ -43,7 +43,7 @@ def test_solving_and_checking_need_no_kinematics(name: str, solver: str, tmp_pat
     ):
         code, modules = run(*arguments)
         assert code == 0
-        assert not modules & (FRONTEND | {"matplotlib", "cellcolor.pictures"})
+        assert not modules & (FRONTEND | {"matplotlib"})
         assert name != "ring.json" or "networkx" not in modules
 
 

@@ -65,7 +65,6 @@ def test_a_division_does_without_colors_that_no_way_leads_to(
                 return Transfer(np.array([start, end]), 0, "a wall")
         return between(ways, start, end)
 
-@pytest.mark.second
     monkeypatch.setattr(Ways, "between", shut_off)
     planned = cellcolor.plan(scene, spacing_m=0.05)
     assert not planned.trajectory.unplanned
@@ -74,6 +73,9 @@ def test_a_division_does_without_colors_that_no_way_leads_to(
     assert planned.solution.proved_for_surface
     (note,) = [note for note in planned.solution.notes if "found no way" in note]
     assert whole.colors[color] in note
+
+
+@pytest.mark.second
 def test_a_scene_is_prepared_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """By a plan, and by a check of it; whatever follows uses the same."""
     made, prepare = [], cellcolor.frontend.prepared._prepared
@@ -146,7 +148,6 @@ def test_questions_leave_time_for_the_files(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 @pytest.mark.second
-@pytest.mark.second
 def test_what_is_left_alone_is_not_driven_and_not_missed(tmp_path: Path) -> None:
     """The judge asks for it unless it is told; a plan's surface tells."""
     scene = shipped("square", 200)
@@ -164,6 +165,9 @@ def test_what_is_left_alone_is_not_driven_and_not_missed(tmp_path: Path) -> None
     assert "uncovered" in cellcolor.check(scene, trajectory).fault_counts
     surface = cellcolor.LabelledSurface.read(tmp_path / "folder" / "instance.surface.json")
     assert cellcolor.check(scene, trajectory, left_alone=surface).valid
+
+
+@pytest.mark.second
 def test_the_feed_of_each_stroke_is_said_and_held(tmp_path: Path) -> None:
     """In the summary, on the page, in the verdict; by a judge that has only the files, too."""
     scene = shipped("square", 200)

@@ -52,7 +52,6 @@ def plate(tmp_path: Path) -> Path:
     return file
 
 
-@pytest.mark.second
 @pytest.mark.parametrize(("arm", "family"), first_is_quick(("kr6", "eaik"), ("ur5", "ur")))
 def test_family_flange_place_and_home_are_found(
     arm: str, family: str, plate: Path, tmp_path: Path
@@ -75,6 +74,7 @@ def test_family_flange_place_and_home_are_found(
     assert whole > 0.9
 
 
+@pytest.mark.second
 def test_links_that_overlap_in_every_posture_are_found_before_a_place_is_sought(
     plate: Path, tmp_path: Path
 ) -> None:
@@ -91,7 +91,6 @@ def test_links_that_overlap_in_every_posture_are_found_before_a_place_is_sought(
     assert any("link_4 and link_6 overlap" in note for note in made.notes)
 
 
-@pytest.mark.second
 @settings(deadline=None, max_examples=50)
 @given(
     st.tuples(*[st.floats(-3.2, 3.2)] * 3),
@@ -111,6 +110,7 @@ def test_the_tool_is_turned_onto_the_last_axis(rpy: tuple[float, float, float], 
     assert np.allclose(tool, [outward, 0, 0], atol=2e-3)
 
 
+@pytest.mark.second
 def test_a_flange_measured_beside_the_last_axis_is_moved_onto_it(
     plate: Path, tmp_path: Path
 ) -> None:
@@ -129,7 +129,6 @@ def test_an_arm_with_an_offset_wrist_is_known(tmp_path: Path) -> None:
     assert json.loads(arm_of(file, None, "tip", tmp_path, {}).keys["family"]) == "offset-wrist"
 
 
-@pytest.mark.second
 def test_ready_to_plan(plate: Path, tmp_path: Path, capsys: Capture) -> None:
     folder = tmp_path / "new"
     assert run("new", plate, ROBOTS / "ur5.urdf", "-o", folder) == 0
@@ -140,6 +139,7 @@ def test_ready_to_plan(plate: Path, tmp_path: Path, capsys: Capture) -> None:
     assert planned.trajectory.lift_offs == planned.solution.lift_offs
 
 
+@pytest.mark.second
 def test_only_its_own_files_are_replaced(plate: Path, tmp_path: Path, capsys: Capture) -> None:
     folder, arm = tmp_path / "new", ROBOTS / "ur5.urdf"
     assert run("new", plate, arm, "-o", folder) == 0
@@ -208,8 +208,6 @@ def new(capsys: Capture, part: Path, arm: Path, folder: Path, *options: str) -> 
     return capsys.readouterr().out
 
 
-@pytest.mark.second
-@pytest.mark.second
 @pytest.mark.parametrize(
     ("options", "flipped", "faces"),
     first_is_quick(
@@ -239,6 +237,7 @@ def test_a_sheet_wound_inside_out(
     assert (prepare(scene).surface.normals[:, 2].mean() > 0) == (faces == "up")
 
 
+@pytest.mark.second
 def test_a_sheet_wound_half_each_way(plate: Path, tmp_path: Path, capsys: Capture) -> None:
     """What inspect and repair say of it, new says as well."""
     mesh = trimesh.load_mesh(plate)
@@ -251,6 +250,7 @@ def test_a_sheet_wound_half_each_way(plate: Path, tmp_path: Path, capsys: Captur
     assert Scene.read(tmp_path / "new" / "scene.toml").object.repair
 
 
+@pytest.mark.second
 def test_the_part_is_not_put_too_near(plate: Path, tmp_path: Path) -> None:
     """At the nearest place where all is reached, the wrist is 0.23 rad from being straight."""
     made = cellcolor.new(plate, ROBOTS / "kr6.urdf", tmp_path / "new")
@@ -267,8 +267,6 @@ def shell(folder: Path) -> Path:
     return folder / "shell.stl"
 
 
-@pytest.mark.second
-@pytest.mark.second
 @pytest.mark.parametrize(
     ("options", "side"),
     first_is_quick(((), "up"), (("--outside", "away"), "down"), (("--cover", "all"), "both")),
@@ -283,6 +281,7 @@ def test_one_side_of_a_shell(
     assert np.unique(np.round(normals[np.abs(normals[:, 2]) > 0.99, 2])).tolist() == along
 
 
+@pytest.mark.second
 def test_the_largest_piece_of_a_block(tmp_path: Path, capsys: Capture) -> None:
     trimesh.creation.box((200, 150, 100)).export(tmp_path / "block.stl")
     said = new(
@@ -293,6 +292,7 @@ def test_the_largest_piece_of_a_block(tmp_path: Path, capsys: Capture) -> None:
     assert surface.mesh.areas.sum() == pytest.approx(0.2 * 0.15)
 
 
+@pytest.mark.second
 def test_a_large_part_gets_a_mesh_of_some_thousand_vertices(
     tmp_path: Path, capsys: Capture
 ) -> None:
@@ -346,7 +346,6 @@ def test_an_arm_on_a_rail_stands_still(
     assert (vertices.min(axis=0) + vertices.max(axis=0))[1] / 2 == pytest.approx(at)
 
 
-@pytest.mark.second
 @pytest.mark.parametrize(
     ("fix", "message"),
     [
@@ -369,6 +368,7 @@ def test_a_joint_that_cannot_stand_there(
     assert not (tmp_path / "new").exists()
 
 
+@pytest.mark.second
 def test_under_an_arm_that_hangs(plate: Path, tmp_path: Path) -> None:
     """The part lies below its base, not above the ground far below."""
     text = (ROBOTS / "ur5.urdf").read_text()
@@ -396,7 +396,6 @@ def test_an_upright_part_is_turned_to_the_robot(
     assert np.allclose(normals.mean(axis=0)[[0, 1]], [-1, 0], atol=0.1)
 
 
-@pytest.mark.second
 def test_the_home_is_over_the_part_and_well_conditioned(plate: Path, tmp_path: Path) -> None:
     made = cellcolor.new(plate, ROBOTS / "ur5e.urdf", tmp_path / "new")
     prepared = prepare(made.scene)
@@ -410,6 +409,7 @@ def test_the_home_is_over_the_part_and_well_conditioned(plate: Path, tmp_path: P
     assert any("100 mm over the part" in note for note in made.notes)
 
 
+@pytest.mark.second
 def test_a_tool_of_ones_own(plate: Path, tmp_path: Path) -> None:
     tool = ROBOTS / "polishing_tool.urdf"
     made = cellcolor.new(
