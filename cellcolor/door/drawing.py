@@ -17,7 +17,7 @@ from cellcolor.checker.groups import regions_on_surface
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.door.installed import extras_for
-from cellcolor.door.subject import Result, Solvable, Subject, open_subject
+from cellcolor.door.subject import Result, Solvable, Subject, open_subject, solution_of
 from cellcolor.errors import InputError, naming
 from cellcolor.files.writing import HTML, PNG, SVG, FileKind, Output, path_of, write
 from cellcolor.pictures.picture import Picture2D, Picture3D
@@ -126,8 +126,6 @@ def show(
     """
     if path is not None:
         kind_of_picture(path_of(path))
-    if isinstance(solution, Result):
-        solution = solution.solution
     subject = source.subject if isinstance(source, Result) else open_subject(source)
     usual = _usual_view(source, subject)
     named = view is not None or any(one is not None for one in (color, vertex, solution, plan))
@@ -247,12 +245,11 @@ def _number(names: tuple[str, ...], asked: str | int | None, file: str | None, f
 
 
 def _checked(
-    subject: Subject, claim: Solution | str | PathLike[str] | None, *, on_surface: bool
+    subject: Subject, claim: Solution | Result | str | PathLike[str], *, on_surface: bool
 ) -> tuple[Solution, tuple[BoundVerdict, ...]]:
     """A valid solution of the subject with a division, and the checker's verdicts on its bounds."""
-    assert claim is not None
-    file = None if isinstance(claim, Solution) else str(claim)
-    solution = claim if isinstance(claim, Solution) else Solution.read(claim)
+    file = str(claim) if isinstance(claim, (str, PathLike)) else None
+    solution = solution_of(claim)
     instance = subject.graph()
     regions = None
     if on_surface:

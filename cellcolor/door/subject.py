@@ -390,3 +390,14 @@ class Result(Drawn):
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self.instance.name!r}: {self}>"
+
+
+def solution_of(claim: Solution | Result | str | PathLike[str]) -> Solution:
+    """The solution that is given: by itself, in a result, or in a file.
+
+    Raises:
+        InputError: the file cannot be used.
+    """
+    if isinstance(claim, Result):
+        return claim.solution
+    return claim if isinstance(claim, Solution) else Solution.read(claim)
