@@ -3,7 +3,8 @@
 A strand is one of several parallel corridors across an edge; a seam is a virtual edge that makes
 one cyclic list of two loops of a cell (docs/semantics.md, sections 4 and 5). Both solvers put them
 in by code of their own (``dfs/graph.py``, ``cpsat/dart_graph.py``). That is on purpose: the
-other two reveal a mistake that only one of the three makes.
+other two reveal a mistake that only one of the three makes. :func:`whole_subcells` takes seams out
+again.
 """
 
 from __future__ import annotations
@@ -87,12 +88,11 @@ def _connect(loops: list[list[int]], seam: Seam) -> None:
 
 
 class WholeSubCell(NamedTuple):
-    """A sub-cell as it is on the surface, where no seam parts anything."""
+    """A sub-cell as it is on the surface, with its darts in state 1, those of seams left out."""
 
     color: int
     segment: int
     strands: frozenset[Strand]
-    """Its darts in state 1, those of seams left out."""
 
 
 def whole_subcells(cell: CellDivision, seams: set[int]) -> list[WholeSubCell]:
@@ -100,22 +100,14 @@ def whole_subcells(cell: CellDivision, seams: set[int]) -> list[WholeSubCell]:
     holder = {
         strand_of(name): number for number, sub in enumerate(cell.subcells) for name in sub.darts
     }
-    whole: Groups[int] = Groups()
-    for number in range(len(cell.subcells)):
-        whole.find(number)
+    whole = Groups(range(len(cell.subcells)))
     for strand, number in holder.items():
         if abs(strand[0]) in seams and twin(strand) in holder:
             whole.join(number, holder[twin(strand)])
-    return [
-        WholeSubCell(
-            cell.subcells[min(parts)].color,
-            cell.subcells[min(parts)].segment,
-            frozenset(
-                strand
-                for part in parts
-                for strand in map(strand_of, cell.subcells[part].darts)
-                if abs(strand[0]) not in seams
-            ),
-        )
-        for parts in whole.sets()
-    ]
+    found = []
+    for parts in whole.sets():
+        first = cell.subcells[min(parts)]
+        strands = (strand_of(name) for part in parts for name in cell.subcells[part].darts)
+        own = frozenset(strand for strand in strands if abs(strand[0]) not in seams)
+        found.append(WholeSubCell(first.color, first.segment, own))
+    return found

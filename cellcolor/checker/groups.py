@@ -1,8 +1,12 @@
-"""Disjoint sets, for the checker alone: it shares nothing with the solvers but the data classes."""
+"""What is connected: disjoint sets, and color regions, for the checker alone.
+
+It shares nothing with the solvers but the data classes. A color region is all that one segment of a
+color could ever reach (docs/semantics.md, section 4): cells of a graph, or vertices of a surface.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from typing import Generic, TypeVar
 
 from cellcolor.data.instance import Instance
@@ -12,10 +16,10 @@ T = TypeVar("T", bound=Hashable)
 
 
 class Groups(Generic[T]):
-    """Disjoint sets of nodes."""
+    """Disjoint sets of nodes; at first each is a set of its own."""
 
-    def __init__(self) -> None:
-        self._above: dict[T, T] = {}
+    def __init__(self, nodes: Iterable[T] = ()) -> None:
+        self._above = {node: node for node in nodes}
 
     def find(self, node: T) -> T:
         """The one that stands for a set; a node not seen before is a set of its own."""
@@ -45,9 +49,6 @@ ColorRegion = tuple[int, int]
 def regions_of_cells(instance: Instance) -> list[frozenset[ColorRegion]]:
     """The color regions that each cell of a topological graph lies in."""
     together: Groups[ColorRegion] = Groups()
-    for cell in instance.cells:
-        for color in cell.colors:
-            together.find((color, cell.id))
     for edge in instance.edges:
         for color in instance.joinable(edge.id):
             together.join((color, edge.left), (color, edge.right))

@@ -105,9 +105,7 @@ class PlanSearch:
     def _groups(self) -> list[tuple[int, ...]]:
         """The cells, apart where neither color regions nor conflicts connect them."""
         together: Groups[ColorRegion] = Groups()
-        for regions in self._regions.values():
-            first, *others = regions
-            together.find(first)
+        for first, *others in self._regions.values():
             for other in others:
                 together.join(first, other)
         for conflict in self._conflicts:

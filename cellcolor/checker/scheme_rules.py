@@ -95,11 +95,10 @@ def unavoidable_join(cells: Sequence[PaintedCell], joinable: Joinable) -> Strand
         other = twin(dart)
         if dart[0] < 0 or other not in shown:
             continue
-        for late in (False, True):
-            for other_late in (False, True):
-                color = shown[dart][late]
-                if color == shown[other][other_late] and color in joinable(dart):
-                    clauses.append(((dart, not late), (other, not other_late)))
+        for late, other_late in product((False, True), repeat=2):
+            color = shown[dart][late]
+            if color == shown[other][other_late] and color in joinable(dart):
+                clauses.append(((dart, not late), (other, not other_late)))
     return _contradiction(clauses)
 
 
@@ -163,11 +162,11 @@ def unconnected_pair(loops: Sequence[PaintedCell]) -> tuple[int, int] | None:
     """Two sub-cells of one color that no chain of loops and sub-cells connects."""
     groups: Groups[int] = Groups()
     for loop in loops:
-        blocks = list(loop.block_of.values())
-        for block in blocks:
-            groups.join(blocks[0], block)
+        for one, other in pairwise(loop.block_of.values()):
+            groups.join(one, other)
     colors = loops[0].colors
-    for one, other in combinations(sorted(b for part in groups.sets() for b in part), 2):
+    blocks = sorted({block for loop in loops for block in loop.block_of.values()})
+    for one, other in combinations(blocks, 2):
         if colors[one] == colors[other] and groups.find(one) != groups.find(other):
             return one, other
     return None
@@ -181,19 +180,12 @@ def on_loops(
     found: PaintedLoops = {}
     for cell, divided in zip(instance.cells, division, strict=True):
         subcells = whole_subcells(divided, virtual)
-        block_of = {
-            dart: number for number, subcell in enumerate(subcells) for dart in subcell.strands
-        }
-        colors = [subcell.color for subcell in subcells]
-        loops = [
-            [strand for dart in loop for strand in strands_along(dart, strands)]
-            for loop in instance.live_loops[cell.id]
-        ]
-        if loops:
-            found[cell.id] = [
-                PaintedCell(loop, {d: block_of[d] for d in loop if d in block_of}, colors)
-                for loop in loops
-            ]
+        block_of = {dart: number for number, sub in enumerate(subcells) for dart in sub.strands}
+        colors = [sub.color for sub in subcells]
+        for live in instance.live_loops[cell.id]:
+            loop = [strand for dart in live for strand in strands_along(dart, strands)]
+            own = {dart: block_of[dart] for dart in loop if dart in block_of}
+            found.setdefault(cell.id, []).append(PaintedCell(loop, own, colors))
     return found
 
 
@@ -203,17 +195,10 @@ def unavoidable_join_on_loops(cells: PaintedLoops, joinable: Joinable) -> Strand
     A loop without darts in state 1 lies in one sub-cell of its cell, whichever suits, and all its
     darts show that color. Such loops are tried one after the other.
     """
-    settled: list[PaintedCell] = []
-    open_loops: list[tuple[PaintedCell, list[int]]] = []
-    for loops in cells.values():
-        colors = sorted(set(loops[0].colors))
-        for loop in loops:
-            if loop.block_of:
-                settled.append(loop)
-            else:
-                open_loops.append((loop, colors))
+    every = [loop for loops in cells.values() for loop in loops]
+    settled = [loop for loop in every if loop.block_of]
+    open_loops = [(loop, sorted(set(loop.colors))) for loop in every if not loop.block_of]
     open_loops.sort(key=lambda item: len(item[1]))
-
     found = unavoidable_join(settled, joinable)
     if found is not None or not open_loops:
         return found
@@ -293,11 +278,12 @@ def _reduced(loops: list[list[int]]) -> list[list[int]]:
         merged = [
             [
                 label
-                for place, label in enumerate(loop)
-                if len(loop) == 1 or label != loop[place - 1]
+                for before, label in zip([loop[-1], *loop], loop, strict=False)
+                if label != before
             ]
             or loop[:1]
             for loop in loops
+            if loop
         ]
         counts = Counter(label for loop in merged for label in loop)
         kept = [[label for label in loop if counts[label] > 1] for loop in merged]

@@ -215,7 +215,7 @@ def arm_of(
     with naming(urdf):
         for name in arm.leading.keys() & fixed:
             check_position(arm, name, fixed[name])
-        still, _ = settled(arm, fixed)
+        still = settled(arm, fixed)
     chain, moving = arm.chain(flange), arm.leading.keys() - still
     moved = next((at for at, link in enumerate(chain) if arm.joint_above.get(link) in moving), 0)
     standing = [link for link in chain[: moved + 1] if link in arm.shapes]

@@ -123,7 +123,7 @@ def body_mesh(body: Body) -> _Mesh:
 
 def _placed(body: Body, poses: Poses) -> _Mesh:
     points, triangles = body_mesh(body)
-    turned = points @ poses.body_rotation[0, body.joint].T + poses.body_origin[0, body.joint]
+    turned = points @ poses.rotation[0, body.joint].T + poses.origin[0, body.joint]
     return turned, triangles
 
 

@@ -231,8 +231,8 @@ TAKEN_OUT = [
     (
         "5, loop by loop",
         RULES,
-        "settled.append(loop)",
-        "settled.append(as_one(loops))",
+        "every = [loop for loops in cells.values() for loop in loops]",
+        "every = [as_one(loops) for loops in cells.values()]",
         "last and first",
     ),
     (
@@ -245,8 +245,8 @@ TAKEN_OUT = [
     (
         "5, that of any block",
         RULES,
-        "open_loops.append((loop, colors))",
-        "open_loops.append((loop, colors[:1]))",
+        "(loop, sorted(set(loop.colors)))",
+        "(loop, sorted(set(loop.colors))[:1])",
         "one in a hole",
     ),
 ]

@@ -89,7 +89,7 @@ def notes_on_shapes(robot: Robot) -> tuple[str, ...]:
     """
     poses = forward(robot, np.zeros((1, robot.joints)))
     places, length = _axes_of(robot, poses)
-    turn, origin = poses.body_rotation[0], poses.body_origin[0]
+    turn, origin = poses.rotation[0], poses.origin[0]
     middles = [origin[b.joint] + turn[b.joint] @ (b.start + b.end) / 2 for b in robot.bodies]
     far: dict[str, float] = {}
     stray: dict[str, float] = {}
@@ -98,7 +98,7 @@ def notes_on_shapes(robot: Robot) -> tuple[str, ...]:
         size = _size(body)
         if size > length * (1 if body.joint else _HUGE):
             large[body.link] = max(size, large.get(body.link, 0.0))
-        elif 0 < body.joint <= robot.joints:
+        elif body.joint:
             near = places[body.joint - 1 : body.joint + 1]
             off = float(np.linalg.norm(near - middle, axis=1).min()) - size
             gaps = [

@@ -215,18 +215,6 @@ def _kinematics(robot: Robot) -> dict[str, Any]:
         "axis": robot.axis.tolist(),
         "slides": robot.slides.tolist(),
         "tip": robot.tip.ravel().tolist(),
-        "followers": [
-            {
-                "parent": each.parent,
-                "placement": each.placement.ravel().tolist(),
-                "axis": each.axis.tolist(),
-                "slides": each.slides,
-                "leader": each.leader,
-                "multiplier": each.multiplier,
-                "offset": each.offset,
-            }
-            for each in robot.followers
-        ],
     }
 
 

@@ -18,24 +18,21 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
-
-from cellcolor.solvers.bounds.grouping import best_grouping
-
-if TYPE_CHECKING:
-    from pychoco.variables.boolvar import BoolVar
-    from pychoco.variables.intvar import IntVar
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf
+from typing import TYPE_CHECKING, Any
 
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds.cover import Region, color_regions
+from cellcolor.solvers.bounds.grouping import best_grouping
 from cellcolor.solvers.joined_chains import only_loops
+
+if TYPE_CHECKING:
+    from pychoco.variables.boolvar import BoolVar
+    from pychoco.variables.intvar import IntVar
 
 Pair = tuple[int, int]
 """Two darts of one cell, in the order of its list."""
@@ -141,7 +138,7 @@ class Problem:
     def size(self) -> float:
         """About how many terms a model has; most are in the constraints that prevent crossing."""
         if any(len(cell) > MANY_DARTS for cell in self.cells):
-            return inf  # far too many
+            return math.inf  # far too many
         place = {dart: number for cell in self.cells for number, dart in enumerate(cell)}
         return sum(4.0 * (place[other] - place[one]) + 8 for one, other in self.pairs())
 

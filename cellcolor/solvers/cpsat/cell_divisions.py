@@ -6,8 +6,8 @@ alone, whether they can be drawn.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import combinations, product
+from collections.abc import Callable, Iterator, Sequence
+from itertools import combinations
 
 from ortools.sat.python import cp_model
 
@@ -50,37 +50,45 @@ def divisions(
     place_of = {dart: place for place, dart in enumerate(darts)}
     twins = [place_of.get(graph.darts[dart].twin) for dart in darts]
     one_loop = len(graph.loops[cell]) < 2
-    listed = _of_one_loop if one_loop else _of_several_loops
-    for blocks in listed(darts, options, twins, deadline):
+    for blocks in _blocks(darts, options, twins, one_loop, deadline):
         if not blocks:
             yield from (((color, ()),) for color in sorted(graph.colors[cell]))
-        elif one_loop or _kept_between_loops(graph.loops[cell], blocks):
-            made = [Block(color, set(own)) for color, own in blocks]
-            if one_loop or can_be_drawn(cell, made):
-                yield blocks
+        elif one_loop or (
+            _kept_between_loops(graph.loops[cell], blocks)
+            and can_be_drawn(cell, [Block(color, set(own)) for color, own in blocks])
+        ):
+            yield blocks
 
 
-def _of_one_loop(
+def _blocks(
     darts: Sequence[int],
     options: Sequence[Sequence[int]],
     twins: Sequence[int | None],
+    one_loop: bool,
     deadline: Deadline,
 ) -> Iterator[Blocks]:
-    """Divisions of a cell with one loop, decided dart by dart; no blocks if all are in state 0.
+    """Divisions of a cell, decided dart by dart; no blocks if all are in state 0.
 
-    As blocks do not cross, those that can still get darts form a stack. A dart in state 1 goes to
-    one of them, which completes the blocks above it, or begins a new block.
+    A dart in state 1 goes to a block of its color, or begins a new one. On one loop blocks do not
+    cross, so those that can still get darts form a stack: a dart completes the blocks above its
+    own. On several loops all partitions by color are listed that keep the sizes of rule 2.
     """
     states: list[int] = []
     colors: list[int] = []
     members: list[list[int]] = []
 
-    def decide(stack: tuple[int, ...], last: int) -> Iterator[Blocks]:
-        """Decide the next dart; ``last`` is the block of the last one in state 1, -1 for none."""
+    def decide(able: tuple[int, ...], last: int) -> Iterator[Blocks]:
+        """Decide the next dart.
+
+        Args:
+            able: the blocks that can get it.
+            last: the block of the last one in state 1, -1 for none.
+        """
         place = len(states)
         if place == len(darts):
             if len(members) < 2 or (
-                min(map(len, members)) > 1 and (last == 0 or colors[last] != colors[0])
+                min(map(len, members)) > 1
+                and (not one_loop or last == 0 or colors[last] != colors[0])
             ):
                 yield tuple((c, tuple(m)) for c, m in zip(colors, members, strict=True))
             return
@@ -89,63 +97,26 @@ def _of_one_loop(
         for color in options[place] if twin is None or twin > place else [states[twin]]:
             states.append(color)
             if color == ZERO:
-                yield from decide(stack, last)
+                yield from decide(able, last)
             else:
-                for level in reversed(range(len(stack))):
-                    block = stack[level]
-                    if colors[block] == color and (block == last or colors[last] != color):
+                other = not one_loop or last < 0 or colors[last] != color
+                for level in reversed(range(len(able))):
+                    block = able[level]
+                    if colors[block] == color and (block == last or other):
                         members[block].append(darts[place])
-                        yield from decide(stack[: level + 1], block)
+                        yield from decide(able[: level + 1] if one_loop else able, block)
                         members[block].pop()
-                    if len(members[block]) == 1:
+                    if one_loop and len(members[block]) == 1:
                         break  # no block beside others is complete with a single dart
-                if last < 0 or colors[last] != color:
+                if other:
                     colors.append(color)
                     members.append([darts[place]])
-                    yield from decide((*stack, len(colors) - 1), len(colors) - 1)
+                    yield from decide((*able, len(colors) - 1), len(colors) - 1)
                     colors.pop()
                     members.pop()
             states.pop()
 
     return decide((), -1)
-
-
-def _of_several_loops(
-    darts: Sequence[int],
-    options: Sequence[Sequence[int]],
-    twins: Sequence[int | None],
-    deadline: Deadline,
-) -> Iterator[Blocks]:
-    """All partitions of darts in state 1 by color that keep the sizes of rule 2."""
-    for states in product(*options):
-        deadline.check()
-        if any(t is not None and states[t] != own for own, t in zip(states, twins, strict=True)):
-            continue
-        ones = {dart: c for dart, c in zip(darts, states, strict=True) if c != ZERO}
-        for parts in _partitions(ones):
-            if len(parts) < 2 or min(map(len, parts)) > 1:
-                yield tuple((ones[part[0]], tuple(part)) for part in parts)
-
-
-def _partitions(ones: Mapping[int, int]) -> Iterator[list[list[int]]]:
-    """The ways to put darts of one color into blocks."""
-    darts = list(ones)
-
-    def decide(number: int, parts: list[list[int]]) -> Iterator[list[list[int]]]:
-        if number == len(darts):
-            yield parts
-            return
-        dart = darts[number]
-        for part in parts:
-            if ones[part[0]] == ones[dart]:
-                part.append(dart)
-                yield from decide(number + 1, parts)
-                part.pop()
-        parts.append([dart])
-        yield from decide(number + 1, parts)
-        parts.pop()
-
-    return decide(0, [])
 
 
 def _kept_between_loops(loops: Sequence[Sequence[int]], blocks: Blocks) -> bool:
@@ -159,11 +130,11 @@ def _kept_between_loops(loops: Sequence[Sequence[int]], blocks: Blocks) -> bool:
         if any(a == c != b == d for a, b, c, d in combinations(held, 4)):
             return False
     # Sub-cells that no chain of loops and sub-cells connects differ in color.
-    connected: UnionFind[int] = UnionFind(range(len(blocks)))
+    connected: UnionFind[int] = UnionFind()
     for loop in loops:
         connected.union(*(block_of[dart] for dart in loop if dart in block_of))
-    return not any(
-        blocks[one][0] == blocks[other][0] and connected[one] != connected[other]
+    return all(
+        blocks[one][0] != blocks[other][0] or connected[one] == connected[other]
         for one, other in combinations(range(len(blocks)), 2)
     )
 
@@ -181,7 +152,6 @@ class Planarity:
         Loops and sub-cells that form a forest can always be drawn.
 
         Raises:
-            OutOfTime: the deadline came first.
             TooLarge: the model that is to decide would be too large.
         """
         block_of = {dart: number for number, block in enumerate(blocks) for dart in block.darts}

@@ -55,8 +55,7 @@ def painting_of(graph: DartGraph, division: Division) -> Painting:
 def moved(known: DartGraph, painting: Painting, target: DartGraph) -> Painting:
     """A painting on another graph of the same cells.
 
-    Strands that the target does not know are cut; the two sides of a seam's strand are one sub-cell
-    then.
+    Strands that the target lacks are cut; the two sides of a seam's strand are one sub-cell then.
     """
     seams = {seam.id for seam in known.seams}
     found: Painting = []
@@ -78,25 +77,12 @@ def moved(known: DartGraph, painting: Painting, target: DartGraph) -> Painting:
 
 def segments_of(graph: DartGraph, painting: Painting) -> list[set[int]]:
     """The cells that each segment touches."""
-    blocks = [block for cell in painting for block in cell]
-    cell_of = [number for number, cell in enumerate(painting) for _ in cell]
-    holder = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
-    reached = [-1] * len(blocks)
-    segments: list[set[int]] = []
-    for first in range(len(blocks)):
-        if reached[first] >= 0:
-            continue
-        reached[first] = len(segments)
-        segments.append({cell_of[first]})
-        stack = [first]
-        while stack:
-            for dart in blocks[stack.pop()].darts:
-                other = holder[graph.darts[dart].twin]
-                if reached[other] < 0:
-                    reached[other] = reached[first]
-                    segments[-1].add(cell_of[other])
-                    stack.append(other)
-    return segments
+    blocks = [(cell, block) for cell, own in enumerate(painting) for block in own]
+    holder = {dart: number for number, (_, block) in enumerate(blocks) for dart in block.darts}
+    together = UnionFind(range(len(blocks)))
+    for dart, number in holder.items():
+        together.union(number, holder[graph.darts[dart].twin])
+    return [{blocks[number][0] for number in own} for own in together.sets()]
 
 
 def canonical(graph: DartGraph, painting: Painting) -> Painting:
@@ -115,8 +101,7 @@ def canonical(graph: DartGraph, painting: Painting) -> Painting:
     a join and a sub-cell, so the process ends. On a graph without seams there are no more cutting
     paths than before either (docs/semantics.md, section 8).
 
-    Args:
-        painting: what is legal on it; its own blocks are changed.
+    The blocks of the painting are changed.
     """
     cells = [_Cell(*own) for own in zip(graph.loops, painting, strict=True)]
     waiting = dict.fromkeys(reversed(range(len(cells))))
@@ -150,11 +135,8 @@ class _Cell:
 
     def __init__(self, loops: Sequence[Sequence[int]], blocks: Sequence[Block]) -> None:
         self._loops = loops
-        self.block_of: dict[int, Block] = {}
+        self.block_of = {dart: block for block in blocks for dart in block.darts}
         self.own = blocks[0]
-        for block in blocks:
-            for dart in block.darts:
-                self.block_of[dart] = block
         self._shown: dict[int, Block] | None = None
 
     def shown(self, dart: int) -> Block:
@@ -242,7 +224,6 @@ def joined(
 
     Args:
         division: legal otherwise; cells may be painted whole, without any joined edge.
-        seams: those that its darts refer to.
         strands: for each live edge.
     """
     graph = dart_graph(instance, dict.fromkeys(instance.live_edges, strands), seams)

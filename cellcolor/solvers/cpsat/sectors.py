@@ -21,14 +21,13 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import TooLarge
 from cellcolor.solvers.cpsat.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block, Painting
+from cellcolor.union_find import UnionFind
 
 
 class Link(NamedTuple):
-    """Two neighboring sectors.
+    """Two neighboring sectors; the link is side 0 of the one, and side 1 of the other.
 
     Attributes:
-        one: the sector whose side 0 the link is.
-        other: the sector whose side 1 it is.
         dart: the dart of ``one`` across which the other one lies; -1 if both are of one cell.
     """
 
@@ -45,7 +44,6 @@ class SectorGraph:
     Without rings it is all center.
 
     Attributes:
-        graph: the dart graph, with one cyclic list for each cell.
         nodes: the sectors of each cell: ring by ring from the border inwards, and the center.
         rings: how many rings each cell has.
         cell: the cell of each sector.
@@ -113,11 +111,11 @@ def sector_graph(
     """Cut every cell into sectors, with as many rings as every scheme can be drawn in.
 
     Args:
-        most_rings: no cell gets more rings; some schemes may then have no room.
+        most_rings: of a cell; some schemes may then have no room.
         most_colors: of all sectors together, each in any color of its cell.
 
     Raises:
-        TooLarge: there would be more; what is too large is not made.
+        TooLarge: there would be more colors; what is too large is not made.
     """
     made = SectorGraph(graph)
     made.at.extend([0] * len(graph.darts))
@@ -129,10 +127,8 @@ def sector_graph(
         rings = _enough_rings([graph.darts[dart].colors for dart in darts], most)
         colors += (count * rings + 1) * len(graph.colors[cell])
         if most_colors is not None and colors > most_colors:
-            raise TooLarge(
-                "The model was not built: "
-                f"it would need more than {most_colors} literals for the colors of sectors."
-            )
+            need = f"more than {most_colors} literals for the colors of sectors"
+            raise TooLarge(f"The model was not built: it would need {need}.")
         made.nodes.append(range(first, first + count * rings + 1))
         made.rings.append(rings)
         made.cell.extend([cell] * len(made.nodes[-1]))
@@ -150,11 +146,7 @@ def sector_graph(
 
 
 def _add_rings(made: SectorGraph, cell: int, outward: Sequence[tuple[int, int] | None]) -> None:
-    """Link the sectors of a cell, and put all links in order around them.
-
-    Args:
-        outward: the link across each dart, with the side of it; None if there is none.
-    """
+    """Link the sectors of a cell in order; ``outward`` has the link across each dart, if any."""
     first, count, rings = made.nodes[cell][0], len(outward), made.rings[cell]
 
     def link(one: int, other: int) -> int:
@@ -213,36 +205,26 @@ def _longest_chain(colors: Sequence[frozenset[int]], enough: int) -> int:
 
 def painting_of_sectors(sectors: SectorGraph, colors: Sequence[int]) -> Painting:
     """The division in which each sector has the given color."""
-    graph, beside = sectors.graph, sectors.beside
-    block_of: dict[int, Block] = {}
-    painting: Painting = []
+    together = UnionFind(range(len(colors)))
+    for one, other, dart in sectors.links:
+        if dart < 0 and colors[one] == colors[other]:
+            together.union(one, other)
+    blocks = [Block(color, set()) for color in colors]
+    for number, dart in enumerate(sectors.graph.darts):
+        node, color = sectors.at[number], colors[sectors.at[number]]
+        if color == colors[sectors.at[dart.twin]] and color in dart.colors:
+            blocks[together[node]].darts.add(number)
+    painting = []
     for nodes in sectors.nodes:
-        blocks: list[Block] = []
-        for node in nodes:
-            if node in block_of:
-                continue
-            block_of[node] = Block(colors[node], set())
-            blocks.append(block_of[node])
-            reached = [node]
-            for place in reached:
-                for other in beside[place]:
-                    if other not in block_of and colors[other] == colors[node]:
-                        block_of[other] = block_of[node]
-                        reached.append(other)
-        painting.append(blocks)
-    for number, dart in enumerate(graph.darts):
-        node, beyond = sectors.at[number], sectors.at[dart.twin]
-        color = colors[node]
-        if color == colors[beyond] and color in dart.colors:
-            block_of[node].darts.add(number)
-    return [[block for block in cell if block.darts] or cell[:1] for cell in painting]
+        own = [blocks[root] for root in dict.fromkeys(together[node] for node in nodes)]
+        painting.append([block for block in own if block.darts] or own[:1])
+    return painting
 
 
 def sector_colors(sectors: SectorGraph, painting: Painting) -> list[int]:
     """The color of each sector in a canonical painting of the same graph.
 
-    Where a cell has fewer rings than its sub-cells need, those that are nested too deeply come
-    apart.
+    Where there are too few rings, sub-cells that are nested too deeply come apart.
     """
     colors: list[int] = []
     for cell, blocks in enumerate(painting):
@@ -270,25 +252,23 @@ def _shown(darts: Sequence[int], blocks: Sequence[Block]) -> list[Block]:
 
 def _rows(shown: Sequence[Block], rings: int) -> tuple[list[list[Block]], Block]:
     """The block at each place of each ring, and at the center."""
-    best: tuple[tuple[int, int], list[list[Block]], Block] | None = None
     starts = [own for before, own in pairwise([shown[-1], *shown]) if own is not before]
-    for root in {id(block): block for block in shown}.values():
-        above, height = _nesting(shown, root)
-        deepest = max((height[id(b)] for b in shown if b is not root), default=0)
-        order = deepest, -sum(own is root for own in starts)
-        if best is not None and best[0] <= order:
-            continue
-        rows = []
-        row = list(shown)
-        for ring in range(rings):
-            row = [
-                above[id(block)] if block is not root and height[id(block)] < ring else block
-                for block in row
-            ]
-            rows.append(row)
-        best = order, rows, root
-    assert best is not None
-    return best[1], best[2]
+
+    def order(root: Block) -> tuple[int, int]:
+        heights = _nesting(shown, root)[1].items()
+        deepest = max((height for block, height in heights if block != id(root)), default=0)
+        return deepest, -sum(own is root for own in starts)
+
+    root = min({id(block): block for block in shown}.values(), key=order)
+    above, height = _nesting(shown, root)
+    rows, row = [], list(shown)
+    for ring in range(rings):
+        row = [
+            above[id(block)] if block is not root and height[id(block)] < ring else block
+            for block in row
+        ]
+        rows.append(row)
+    return rows, root
 
 
 def _nesting(shown: Sequence[Block], root: Block) -> tuple[dict[int, Block], dict[int, int]]:
@@ -303,7 +283,7 @@ def _nesting(shown: Sequence[Block], root: Block) -> tuple[dict[int, Block], dic
     stack: list[Block] = []
     above: dict[int, Block] = {}
     height: dict[int, int] = {}
-    for place, block in enumerate(turned):
+    for place, block in enumerate([*turned, root]):
         while stack and last[id(stack[-1])] < place:
             done = stack.pop()
             height[id(stack[-1])] = max(height[id(stack[-1])], height[id(done)] + 1)
@@ -311,7 +291,4 @@ def _nesting(shown: Sequence[Block], root: Block) -> tuple[dict[int, Block], dic
             height[id(block)] = 0
             above[id(block)] = stack[-1] if stack else root
             stack.append(block)
-    while len(stack) > 1:
-        done = stack.pop()
-        height[id(stack[-1])] = max(height[id(stack[-1])], height[id(done)] + 1)
     return above, height
