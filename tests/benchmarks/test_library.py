@@ -63,7 +63,11 @@ def test_random_graphs_are_made_again(name: str) -> None:
     assert graph.sha256 == entry.fingerprint
 
 
-OPEN = [entry.name for entry in LIBRARY.entries if entry.is_open and entry.file is not None]
+OPEN = [
+    entry.name
+    for entry in LIBRARY.entries
+    if not (entry.paper.proved and entry.surface.proved) and entry.file is not None
+]
 
 
 @pytest.mark.slow
@@ -73,10 +77,10 @@ def test_ten_seconds_do_not_beat_the_index(name: str) -> None:
     entry = LIBRARY[name]
     graph = graph_of(INSTANCES / (entry.file or ""))
     for space in ("paper", "surface"):
-        if not entry.range_in(space).proved:
+        known = getattr(entry, space)
+        if not known.proved:
             solution = solve(graph, Options(space, STRANDS[space], deadline=Deadline.after(10)))
             assert check_solution(graph, solution).valid
-            known = entry.range_in(space)
             assert solution.lower_bound <= known.lower.value
             assert known.upper is None or (solution.segments or math.inf) >= known.upper.value
 

@@ -294,12 +294,3 @@ def test_in_a_planners_test(tmp_path: Path) -> None:
     part.assert_optimal(path)
     with pytest.raises(AssertionError, match=r"wok-obstacle.: path: 1 stroke.*\nnot comparable"):
         part.assert_valid(cellcolor.ContactPath(path.joints[:5]))
-
-
-def test_values_print_themselves() -> None:
-    joints = joints_of(scene(), best())
-    vertices, touched = len(joints), len(reached())
-    said = f"<JointPlan: {vertices} vertices, {touched} of them with a configuration>"
-    assert repr(cellcolor.JointPlan(joints)) == said
-    path = cellcolor.ContactPath(np.zeros((4, 6)), contact=[True, False, True, True])
-    assert repr(path) == "<ContactPath: 4 samples, 2 strokes>"

@@ -75,6 +75,7 @@ def test_a_division_does_without_colors_that_no_way_leads_to(
     assert whole.colors[color] in note
 
 
+@pytest.mark.second
 def test_a_scene_is_prepared_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """By a plan, and by a check of it; whatever follows uses the same."""
     made, prepare = [], cellcolor.frontend.prepared._prepared
@@ -166,6 +167,7 @@ def test_what_is_left_alone_is_not_driven_and_not_missed(tmp_path: Path) -> None
     assert cellcolor.check(scene, trajectory, left_alone=surface).valid
 
 
+@pytest.mark.second
 def test_the_feed_of_each_stroke_is_said_and_held(tmp_path: Path) -> None:
     """In the summary, on the page, in the verdict; by a judge that has only the files, too."""
     scene = shipped("square", 200)

@@ -12,6 +12,8 @@ from cellcolor.data.solution import Solution
 from cellcolor.door import solving
 from cellcolor.frontend import BuildResult, Scene
 
+pytestmark = pytest.mark.second
+
 SHEET = TOP / "instances" / "parts" / "perforated_sheet.toml"
 
 
