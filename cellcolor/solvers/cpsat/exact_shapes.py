@@ -131,14 +131,14 @@ def _tree_minimum(
         darts = _down(loops[cell], dart)
         below = sum(fewest[d] for d in darts)
         sets = [saving[d] for d in darts if saving[d]]
-        least = below - best_grouping(sets).connections if sets else below + 1
+        least = below - len(sets) + max(1, len(best_grouping(sets)))
         if cell == 0:
             break
         fewest[-dart] = least
         saving[-dart] = frozenset(
             color
             for color in joinable[dart]
-            if below - best_grouping([frozenset((color,)), *sets]).connections == least - 1
+            if below - len(sets) + len(best_grouping([frozenset((color,)), *sets])) == least
         )
     areas: dict[int, Areas] = {}
     joined: dict[int, int] = {}
@@ -148,8 +148,8 @@ def _tree_minimum(
         sets = [saving[d] for d in darts]
         if cell in joined:
             darts, sets = [up[cell], *darts], [frozenset((joined[cell],)), *sets]
-        groups = best_grouping(sets).groups if sets else ()
-        areas[cell] = tuple((g.color, tuple(darts[place] for place in g.darts)) for g in groups)
+        groups = best_grouping(sets)
+        areas[cell] = tuple((color, tuple(darts[place] for place in own)) for color, own in groups)
         for color, own in areas[cell]:
             joined |= {instance.across(dart): color for dart in own if dart != up[cell]}
     return least, areas
