@@ -87,13 +87,6 @@ def test_what_the_scene_refuses_is_solved_again(wok: BuildResult, seed: int) -> 
     assert found.built.surface.vertex_colors[:count] == wok.surface.vertex_colors
 
 
-def test_a_refined_painting_that_the_scene_takes_is_kept(wok: BuildResult) -> None:
-    found = by_chance(wok, 2)
-    assert len(found.painted.surface.vertices) > len(wok.surface.vertices)
-    assert len(found.painted.minima) == 1 and found.built is wok
-    assert reaches(wok.prepared, found)
-
-
 def test_in_the_end_what_is_refused_is_told(
     wok: BuildResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -130,17 +123,6 @@ def test_costs_by_hand(wok: BuildResult) -> None:
         share = min(1.0, min(room) / (np.pi / 2), determinant / determinants.max())
         assert cost[row, branch] == pytest.approx(1 - share)
     assert (cost[~candidates.valid] == 1).all()
-
-
-def test_a_joint_without_limits_has_room_everywhere(wok: BuildResult) -> None:
-    """As one whose limits are so wide that no angle comes near them."""
-    prepared, built = wok.prepared, wok
-    far = np.full(6, 1e4)
-    endless = replace(prepared.robot, lower=np.full(6, -np.inf), upper=np.full(6, np.inf))
-    wide = replace(prepared.robot, lower=-far, upper=far)
-    candidates = built.verdicts
-    assert (color_costs(endless, candidates) == color_costs(wide, candidates)).all()
-    assert np.isfinite(color_costs(endless, candidates)).all()
 
 
 def test_what_is_left_alone_stays_so_on_a_finer_surface(wok: BuildResult) -> None:

@@ -101,11 +101,6 @@ def test_the_fewest_turns_are_no_more_than_those_of_any_other_direction() -> Non
         assert fewest <= turns(path_of(painting, name))
 
 
-def test_a_vector_along_the_normal_gives_the_usual_rows() -> None:
-    usual = path_of(sheet(0.8, 1.2), "back-and-forth")
-    assert np.array_equal(path_of(sheet(0.8, 1.2), "back-and-forth:0,0,1").points, usual.points)
-
-
 @pytest.mark.parametrize(
     ("name", "fault"),
     [
