@@ -287,6 +287,7 @@ def test_two_meshes_are_refused() -> None:
         check_trajectory(replace(built, prepared=finer), trajectory)
 
 
+@pytest.mark.second
 @pytest.mark.parametrize(("margin", "kept"), [(0.0095, True), (0.0105, False)])
 def test_the_tool_keeps_its_margin_to_the_object(margin: float, kept: bool) -> None:
     """Its body ends 10 mm above the tip, which is on a flat square, and is flat itself."""

@@ -108,6 +108,7 @@ def test_an_upright_tool_is_where_its_tip_is() -> None:
     assert at.normals[0, 2] == 1
 
 
-def test_what_would_not_fit_into_memory_is_refused() -> None:
+def test_what_would_not_fit_into_memory_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cellcolor.trajectory_checker.fine_mesh._MOST", 1000)
     with pytest.raises(TooLarge, match="too large to be judged"):
-        refined(bumpy(0), 1e-5, NEVER)
+        refined(bumpy(0), 1e-3, NEVER)

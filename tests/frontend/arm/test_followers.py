@@ -173,18 +173,3 @@ def test_a_weight_that_follows_is_refused_where_forces_are_asked_for() -> None:
     with pytest.raises(InputError, match="force = false") as caught:
         load(tool=finger, force=True)
     assert caught.value.file == str(TOOL)
-
-
-def test_what_follows_a_fixed_joint_stands_at_its_offset() -> None:
-    fixed = '<joint name="weld" type="fixed"><parent link="tool_body"/><child link="w"/></joint>'
-    mimic = 'joint="weld" multiplier="3" offset="0.2"'
-    finger = joint("finger", "w", mimic, "prismatic", axis="1 0 0")
-    robot = load(tool=fixed + '<link name="w"/>' + finger)
-    (ball,) = [body for body in robot.bodies if body.link == "finger_link"]
-    (zero,) = [
-        body
-        for body in load(tool=(fixed + '<link name="w"/>' + finger).replace('"0.2"', '"0"')).bodies
-        if body.link == "finger_link"
-    ]
-    assert robot.followers == ()
-    assert np.linalg.norm(ball.start - zero.start) == pytest.approx(0.2)
