@@ -158,7 +158,7 @@ def test_what_is_left_alone_stays_so_on_a_finer_surface(wok: BuildResult) -> Non
     assert (
         beyond.max()
         < np.median(wok.surface.vertices[:, 0])
-        + wok.prepared.surface.lengths(wok.prepared.surface.edges()).max()
+        + wok.prepared.surface.lengths(wok.prepared.surface.mesh.edges).max()
     )
 
 

@@ -324,7 +324,8 @@ def test_an_obstacle_farther_away() -> None:
     row = next(row for row in cellcolor.explain(scene).amounts if row.keys == ("obstacle[0]",))
     (amount,) = re.findall(r"([\d.]+) mm farther", row.relaxed[0])
     prepared = prepare(scene)
-    middle = np.average(prepared.surface.vertices, axis=0, weights=prepared.surface.vertex_areas())
+    mesh = prepared.surface.mesh
+    middle = np.average(mesh.points, axis=0, weights=mesh.vertex_areas)
     place = np.array(scene.obstacle[0].position_m)  # its own middle, as it is a cylinder
     there = place + float(amount) / 1e3 * (place - middle) / np.linalg.norm(place - middle)
     moved = scene.obstacle[0].model_copy(update={"position_m": tuple(there.tolist())})

@@ -19,8 +19,7 @@ from cellcolor.frontend.parts.mending import (
 )
 from cellcolor.frontend.parts.repairing import mended
 from cellcolor.frontend.parts.shapes import disc_mesh
-from cellcolor.mesh.oriented import directed_edges
-from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.mesh.triangle_mesh import TriangleMesh, directed_edges
 
 BALL = trimesh.creation.icosphere(subdivisions=2, radius=0.1)
 VERTICES, FACES = np.array(BALL.vertices), np.array(BALL.faces, dtype=np.int64)

@@ -126,7 +126,7 @@ def test_without_names_an_arm_with_passing_wrist_axes_has_colors() -> None:
     surface = result.prepared.surface
     # By Newton's method on Pinocchio's Jacobian the links lead to where the sheets say.
     for k in np.random.default_rng(1).choice(len(row), 8, replace=False):
-        ends = surface.edges()[row[k]]
+        ends = surface.mesh.edges[row[k]]
         start, goal = result.configurations[ends, sheet[k]]
         path = follower.along(start, surface.vertices[ends], surface.normals[ends])
         assert path is not None and wrapped(path[-1] - goal).max() < 1e-6
@@ -143,7 +143,7 @@ def linked_nodes(prepared: PreparedScene) -> tuple[Array, Array, Array]:
     solutions = tracker.described(verdicts.configurations)
     limits = prepared.robot.lower, prepared.robot.upper
     matching = Followed.of(surface, nodes, solutions, tracker, limits)
-    return solutions.joints, nodes, matching.along(surface.edges(), NEVER)[0]
+    return solutions.joints, nodes, matching.along(surface.mesh.edges, NEVER)[0]
 
 
 @pytest.mark.second
@@ -161,7 +161,7 @@ def test_a_cuspidal_arm_is_refused_with_both_configurations(
     monkeypatch.setattr("cellcolor.frontend.prepared.named", lambda prepared, _: prepared)
     prepared = prepare(scene)
     surface, robot = prepared.surface, prepared.robot
-    edges = surface.edges()
+    edges = surface.mesh.edges
     joints, nodes, pairs = linked_nodes(prepared)
     slots = nodes.shape[1]
     here, there = (edges[pairs[:, 0], end] * slots + pairs[:, 1 + end] for end in (0, 1))
@@ -195,7 +195,7 @@ class Disc:
         flat, faces = disc_mesh(7, 0.0, 0)
         vertices = np.column_stack([flat, np.zeros(7)])
         self.surface = Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (7, 1)))
-        self.edges = self.surface.edges()
+        self.edges = self.surface.mesh.edges
         joints = np.zeros((7, 2, 6))
         joints[:, 1, 0] = 2.0
         ones = np.ones((7, 2))
@@ -222,7 +222,7 @@ def test_a_component_and_what_is_linked_to_nothing() -> None:
     corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     surface = Surface(corners, np.array([[0, 1, 2]]), np.tile([0.0, 0.0, 1.0], (3, 1)))
     ones, (a, b) = np.ones((3, 2)), (0, 1)
-    rows = {tuple(edge): row for row, edge in enumerate(surface.edges().tolist())}
+    rows = {tuple(edge): row for row, edge in enumerate(surface.mesh.edges.tolist())}
     links = np.array([[rows[0, 1], a, b], [rows[1, 2], b, a]])
     solutions = Solutions(np.zeros((3, 2, 6)), ones, ones > 0)
     sheets = sheets_of(surface, links, ones > 0, solutions)

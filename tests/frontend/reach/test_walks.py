@@ -141,7 +141,7 @@ def test_links_and_faces_everywhere(name: str) -> None:
     scene = shipped(name, vertices)
     result, prepared = build_surface(scene), prepare(scene)
     surface = prepared.surface
-    edges = surface.edges()
+    edges = surface.mesh.edges
     linked = linked_edges(result, edges)
     links, branch = np.nonzero(linked)
     count = int(np.ceil(surface.lengths(edges).max() / MILLIMETER))
@@ -186,7 +186,7 @@ def test_an_obstacle_between_two_vertices_is_met() -> None:
     ball = SphereObstacle(radius_m=0.008, position_m=(-0.369, -0.149, 0.228))
     scene = shipped("square").with_obstacle(ball)
     result, prepared = build_surface(scene), prepare(scene)
-    edges = prepared.surface.edges()
+    edges = prepared.surface.mesh.edges
     branch = result.branches.index("shoulder-left elbow-up wrist-flipped")
     rows = np.flatnonzero(linked_edges(result, edges)[:, branch])
     way = np.linspace(0, 1, 21)
