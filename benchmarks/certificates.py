@@ -16,7 +16,7 @@ from pathlib import Path
 from library_entries import INDEX, graph_of, solution_files
 
 from cellcolor.checker.certificates import verify_bound
-from cellcolor.checker.color_regions import regions_of_cells
+from cellcolor.checker.groups import regions_of_cells
 from cellcolor.data.library_index import LibraryEntry, LibraryIndex
 from cellcolor.data.solution import Solution
 

@@ -8,8 +8,8 @@ from cellcolor.data.cells_and_edges import Cell as Cell
 from cellcolor.data.cells_and_edges import Edge as Edge
 from cellcolor.data.coverage import Coverage as Coverage
 from cellcolor.data.instance import Instance as Instance
-from cellcolor.data.joint_plan import ContactPath as ContactPath
-from cellcolor.data.joint_plan import JointPlan as JointPlan
+from cellcolor.data.plan import ContactPath as ContactPath
+from cellcolor.data.plan import JointPlan as JointPlan
 from cellcolor.data.plan import Plan as Plan
 from cellcolor.data.solution import CellDivision as CellDivision
 from cellcolor.data.solution import Solution as Solution
@@ -60,10 +60,10 @@ from cellcolor.oracle import PathVerdict as PathVerdict
 from cellcolor.oracle import ProvenRange as ProvenRange
 from cellcolor.oracle import Verdict as Verdict
 from cellcolor.painting.paint import Painted as Painted
-from cellcolor.questions.explanation import Explanation as Explanation
-from cellcolor.questions.explanation import RelaxedMinimum as RelaxedMinimum
-from cellcolor.questions.front import Front as Front
-from cellcolor.questions.front import FrontPoint as FrontPoint
+from cellcolor.questions.answers import Explanation as Explanation
+from cellcolor.questions.answers import Front as Front
+from cellcolor.questions.answers import FrontPoint as FrontPoint
+from cellcolor.questions.answers import RelaxedMinimum as RelaxedMinimum
 from cellcolor.questions.placements import Leeway as Leeway
 from cellcolor.questions.placements import PlacedMinimum as PlacedMinimum
 from cellcolor.questions.placements import Placements as Placements

@@ -8,7 +8,7 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
-from cellcolor.pictures.palette import INK, LINES
+from cellcolor.pictures.picture import INK, LINES
 
 _SIZE = 160.0
 _MARGIN = 8.0

@@ -16,18 +16,17 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from cellcolor.checker.color_regions import ColorRegion
 from cellcolor.checker.crossing_segments import WORK, TwoRegions
-from cellcolor.checker.groups import Groups
+from cellcolor.checker.groups import ColorRegion, Groups
 from cellcolor.checker.plan_search import Conflict, PlanSearch
 from cellcolor.checker.proof import BudgetExceeded, Proof, Refused, few
-from cellcolor.data.bound_kinds import (
+from cellcolor.data.bounds import (
+    Bound,
     CertifiedCells,
     CertifiedPart,
     CertifiedParts,
     certificate_of,
 )
-from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
@@ -43,13 +42,11 @@ class BoundVerdict:
     """What came of verifying a bound.
 
     Attributes:
-        bound: the bound.
         outcome: ``verified``: it is true. ``refused``: its certificate does not prove it.
             ``budget exceeded``: not known. ``no certificate``: it is taken on trust, or of a kind
             that nothing here can verify.
         reason: why it was refused, a sentence; empty otherwise.
-        tried: how many choices were tried.
-        budget: how many could have been tried.
+        tried: choices, of as many as ``budget``.
     """
 
     bound: Bound
@@ -99,8 +96,7 @@ def verify_bound(
     """Verify a lower bound of the number of segments by its certificate.
 
     Args:
-        regions: the color regions that each cell lies in, see
-            :mod:`cellcolor.checker.color_regions`.
+        regions: the color regions that each cell lies in.
         budget: how many choices may be tried. The deadline ends them in the same way.
     """
     proof = Proof(instance, regions, budget, deadline)
@@ -128,9 +124,8 @@ def _leave_out(proof: Proof, steps: Sequence[tuple[int, int, int]]) -> None:
             if not any(other[0] == stand_in for other in proof.regions[own]):
                 raise Refused(f"color {stand_in} cannot stand in for color {color} in {own}")
             for dart in (dart for loop in proof.instance.cells[own].loops for dart in loop):
-                joinable = proof.instance.joinable(abs(dart))
-                edge = proof.instance.edge(abs(dart))
-                within = edge.left in inside and edge.right in inside
+                joinable = proof.instance.joinable(dart)
+                within = proof.instance.across(dart) in inside
                 if within and color in joinable and stand_in not in joinable:
                     text = f"color {stand_in} does not continue across edge {abs(dart)}"
                     raise Refused(f"{text}, where color {color} does")
@@ -166,18 +161,15 @@ def _conflicts(proof: Proof, part: CertifiedPart) -> Iterator[Conflict]:
             raise Refused("a conflict names no cells")
         first = proof.region(crossing.colors[0], min(ends[0]))
         second = proof.region(crossing.colors[1], min(ends[2]))
-        for cells in ends[:2]:
-            _one_area(proof, cells, first, second)
-        for cells in ends[2:]:
-            _one_area(proof, cells, second, first)
+        for number, cells in enumerate(ends):
+            _one_area(proof, cells, *((first, second) if number < 2 else (second, first)))
         if (first, second) not in two_regions:
             cells_of = frozenset(proof.cells_of(first)), frozenset(proof.cells_of(second))
             two_regions[first, second] = TwoRegions(
                 proof.instance, crossing.colors, cells_of, proof.count
             )
-        two = two_regions[first, second]
         one, other, far, farther = (min(cells) for cells in ends)
-        if not two.must_cross((one, other), (far, farther)):
+        if not two_regions[first, second].must_cross((one, other), (far, farther)):
             text = f"segments that connect cells {one} and {other}, and {far} and {farther}"
             raise Refused(f"{text}, need not cross")
         yield Conflict((first, second), (ends[0], ends[1], ends[2], ends[3]))
@@ -195,13 +187,11 @@ def _one_area(proof: Proof, cells: frozenset[int], region: ColorRegion, other: C
             raise Refused(f"cell {cell} is in the color regions of both segments")
     darts = [dart for c in cells for loop in proof.instance.cells[c].loops for dart in loop]
     proof.count((len(cells) + len(darts)) // WORK)
-    together: Groups[int] = Groups()
-    for cell in cells:
-        together.find(cell)
+    together = Groups(cells)
     for dart in darts:
-        edge = proof.instance.edge(abs(dart))
+        edge = proof.instance.edge(dart)
         inside = edge.left in cells and edge.right in cells
-        if inside and region[0] in proof.instance.joinable(abs(dart)):
+        if inside and region[0] in proof.instance.joinable(dart):
             together.join(edge.left, edge.right)
     if len(together.sets()) > 1:
         raise Refused(f"the cells {few(cells)} are not connected in color {region[0]}")

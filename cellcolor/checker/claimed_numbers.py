@@ -3,12 +3,13 @@ each other."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import astuple
 from math import isclose
 
 from cellcolor.checker.certificates import BoundVerdict
-from cellcolor.checker.groups import Groups
+from cellcolor.checker.groups import Groups, regions_of_cells
 from cellcolor.data.bounds import greatest
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance, KnownResult
@@ -24,7 +25,7 @@ def number_problems(
     """What is wrong with a solution's numbers, each naming its member.
 
     Args:
-        segments: of the division, which has been found legal; None without one.
+        segments: of the division, which is legal; None without one.
     """
     problems = _bound_problems(instance, solution, segments)
     problems += _proof_problems(solution, segments)
@@ -141,34 +142,20 @@ def _scheme_problems(instance: Instance, solution: Solution) -> list[str]:
     return problems
 
 
-_Node = tuple[int, int]
-"""A cell, and one of its colors."""
-
-
 def segments_of_whole_cells(instance: Instance) -> int:
-    """The segments of a painting of undivided cells, a large region of one color after another.
+    """The segments of a painting of undivided cells, each in the largest of its color regions.
 
     To paint every cell whole is legal in both search spaces, with any number of strands, and cells
     of one color are joined wherever they can be. So the fewest segments are at most these.
     """
-    regions: Groups[_Node] = Groups()
-    for cell in instance.cells:
-        for color in cell.colors:
-            regions.find((cell.id, color))
+    regions = regions_of_cells(instance)
+    size = Counter(region for own in regions for region in own)
+    painted = [max(own, key=lambda region: (size[region], region)) for own in regions]
+    segments = Groups(range(len(painted)))
     for edge in instance.edges:
         for color in instance.joinable(edge.id):
-            regions.join((edge.left, color), (edge.right, color))
-    painted: dict[int, int] = {}
-    for region in sorted(regions.sets(), key=len, reverse=True):
-        for cell_id, color in region:
-            painted.setdefault(cell_id, color)
-    segments: Groups[_Node] = Groups()
-    for node in painted.items():
-        segments.find(node)
-    for edge in instance.edges:
-        color = painted.get(edge.left, -1)
-        if color in instance.joinable(edge.id) and painted[edge.right] == color:
-            segments.join((edge.left, color), (edge.right, color))
+            if painted[edge.left][0] == painted[edge.right][0] == color:
+                segments.join(edge.left, edge.right)
     return len(segments.sets())
 
 
@@ -200,13 +187,9 @@ def _minimum(space: str, known: KnownResult, segments: int | None, bound: int) -
 
 
 def _schemes(known: KnownResult, solution: Solution) -> list[str]:
-    if known.schemes is None or not solution.schemes or solution.segments != known.segments:
+    all_, found = known.schemes, solution.schemes
+    if all_ is None or not found or solution.segments != known.segments:
         return []
-    wrong = solution.schemes > known.schemes
-    if solution.complete:
-        wrong = solution.schemes != known.schemes
-    if not wrong:
+    if found == all_ or (found < all_ and not solution.complete):
         return []
-    return [
-        f"known.paper.schemes: {known.schemes} are said to be all, {solution.schemes} are found"
-    ]
+    return [f"known.paper.schemes: {all_} are said to be all, {found} are found"]

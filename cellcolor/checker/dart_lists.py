@@ -3,16 +3,19 @@
 A strand is one of several parallel corridors across an edge; a seam is a virtual edge that makes
 one cyclic list of two loops of a cell (docs/semantics.md, sections 4 and 5). Both solvers put them
 in by code of their own (``dfs/graph.py``, ``cpsat/dart_graph.py``). That is on purpose: the
-other two reveal a mistake that only one of the three makes.
+other two reveal a mistake that only one of the three makes. :func:`whole_subcells` takes seams out
+again.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
-from cellcolor.data.cells_and_edges import Strand
+from cellcolor.checker.groups import Groups
+from cellcolor.data.cells_and_edges import Strand, strand_of, twin
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Seam
+from cellcolor.data.solution import CellDivision, Seam
 
 
 class NoLists(Exception):
@@ -82,3 +85,29 @@ def _connect(loops: list[list[int]], seam: Seam) -> None:
     place = near.index(seam.from_) + 1
     near[place:place] = detour
     loops.remove(far)
+
+
+class WholeSubCell(NamedTuple):
+    """A sub-cell as it is on the surface, with its darts in state 1, those of seams left out."""
+
+    color: int
+    segment: int
+    strands: frozenset[Strand]
+
+
+def whole_subcells(cell: CellDivision, seams: set[int]) -> list[WholeSubCell]:
+    """The sub-cells of a cell: those that only a seam, given by its id, parts are one."""
+    holder = {
+        strand_of(name): number for number, sub in enumerate(cell.subcells) for name in sub.darts
+    }
+    whole = Groups(range(len(cell.subcells)))
+    for strand, number in holder.items():
+        if abs(strand[0]) in seams and twin(strand) in holder:
+            whole.join(number, holder[twin(strand)])
+    found = []
+    for parts in whole.sets():
+        first = cell.subcells[min(parts)]
+        strands = (strand_of(name) for part in parts for name in cell.subcells[part].darts)
+        own = frozenset(strand for strand in strands if abs(strand[0]) not in seams)
+        found.append(WholeSubCell(first.color, first.segment, own))
+    return found

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from cellcolor.checker.certificates import BoundVerdict, verify_bound
 from cellcolor.checker.claimed_numbers import number_problems
-from cellcolor.checker.color_regions import ColorRegion, regions_of_cells
 from cellcolor.checker.dart_lists import NoLists, live_lists
-from cellcolor.checker.drawable import can_be_drawn
-from cellcolor.checker.groups import Groups
+from cellcolor.checker.groups import ColorRegion, Groups, regions_of_cells
 from cellcolor.checker.scheme_rules import (
     Joinable,
     PaintedCell,
     as_one,
+    can_be_drawn,
     crossing,
     idle_cut,
     on_loops,
@@ -38,7 +37,7 @@ class Report:
     Attributes:
         problems: what is wrong, each naming its element; none when it is valid.
         not_canonical: why a legal division is not a scheme (semantics, rules 2 and 4).
-        segments: the number of segments counted, None when the division is not legal.
+        segments: as many as were counted, None when the division is not legal.
         bounds: what came of verifying each of a solution's bounds by its certificate.
     """
 
@@ -154,11 +153,8 @@ def _legal(division: Division, stuck: Strand | None, not_canonical: Sequence[str
     """
     problems, segments = _segments(division)
     if stuck is not None:
-        text = (
-            f"edge {_edge(stuck)}: shows one joinable color on both sides in state 0; join it "
-            "(cellcolor.solvers.joining.joined does)"
-        )
-        problems.insert(0, text)
+        text = f"edge {_edge(stuck)}: shows one joinable color on both sides in state 0; join it"
+        problems.insert(0, f"{text} (cellcolor.solvers.cpsat.painting.joined does)")
     return Report(tuple(problems), tuple(not_canonical), segments)
 
 
@@ -222,9 +218,8 @@ def _cell_problems(instance: Instance, cell: CellDivision, darts: Sequence[Stran
         for name in sub.darts:
             dart = strand_of(name)
             if dart not in own:
-                problems.append(
-                    f"{where}.darts: {_text(dart)} is not a live dart of cell {cell.id}"
-                )
+                not_own = f"is not a live dart of cell {cell.id}"
+                problems.append(f"{where}.darts: {_text(dart)} {not_own}")
             if dart in seen:
                 problems.append(f"{where}.darts: {_text(dart)} appears twice")
             seen.add(dart)
@@ -247,28 +242,20 @@ def _edge_problems(division: Division, joinable: Joinable) -> list[str]:
 
 def _segments(division: Division) -> tuple[list[str], int]:
     """Faults of the segment numbers, and how many segments there are."""
-    joined: Groups[tuple[int, int]] = Groups()
-    holder: dict[Strand, tuple[int, int]] = {}
-    label: dict[tuple[int, int], int] = {}
-    for cell in division:
-        for number, sub in enumerate(cell.subcells):
-            node = (cell.id, number)
-            joined.find(node)
-            label[node] = sub.segment
-            holder |= dict.fromkeys(map(strand_of, sub.darts), node)
+    subcells = {(cell.id, n): sub for cell in division for n, sub in enumerate(cell.subcells)}
+    joined = Groups(subcells)
+    holder = {strand_of(name): node for node, sub in subcells.items() for name in sub.darts}
     for dart, node in holder.items():
         joined.join(node, holder[twin(dart)])
     problems = []
-    pieces: dict[int, int] = defaultdict(int)
+    pieces: Counter[int] = Counter()
     components = joined.sets()
     for component in components:
-        labels = {label[node] for node in component}
-        place = min(component)
+        labels = {subcells[node].segment for node in component}
         if len(labels) > 1:
-            where = "cells[{}].subcells[{}].segment".format(*place)
+            where = "cells[{}].subcells[{}].segment".format(*min(component))
             problems.append(f"{where}: one segment has numbers {sorted(labels)}")
-        for value in labels:
-            pieces[value] += 1
+        pieces.update(labels)
     problems += [
         f"segment {value}: stands for {count} separate segments"
         for value, count in sorted(pieces.items())

@@ -18,8 +18,7 @@ from dataclasses import dataclass
 from functools import reduce
 from operator import or_
 
-from cellcolor.checker.color_regions import ColorRegion
-from cellcolor.checker.groups import Groups
+from cellcolor.checker.groups import ColorRegion, Groups
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,9 +105,7 @@ class PlanSearch:
     def _groups(self) -> list[tuple[int, ...]]:
         """The cells, apart where neither color regions nor conflicts connect them."""
         together: Groups[ColorRegion] = Groups()
-        for regions in self._regions.values():
-            first, *others = regions
-            together.find(first)
+        for first, *others in self._regions.values():
             for other in others:
                 together.join(first, other)
         for conflict in self._conflicts:

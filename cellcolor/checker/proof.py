@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from cellcolor.checker.color_regions import ColorRegion
+from cellcolor.checker.groups import ColorRegion
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline
 
@@ -24,7 +24,6 @@ class Proof:
 
     Attributes:
         regions: the color regions that each cell lies in, without those that were left out.
-        budget: how many choices may be tried. The deadline ends them in the same way.
         tried: choices so far.
     """
 
@@ -35,10 +34,8 @@ class Proof:
         budget: int,
         deadline: Deadline,
     ) -> None:
-        self.instance = instance
-        self.regions = list(regions)
-        self.budget = budget
-        self.deadline = deadline
+        self.instance, self.regions = instance, list(regions)
+        self.budget, self.deadline = budget, deadline
         self.tried = 0
 
     def count(self, choices: int = 1) -> None:

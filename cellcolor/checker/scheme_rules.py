@@ -8,11 +8,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations, pairwise
+from itertools import combinations, pairwise, product
 
-from cellcolor.checker.dart_lists import strands_along
+from cellcolor.checker.dart_lists import strands_along, whole_subcells
 from cellcolor.checker.groups import Groups
-from cellcolor.checker.whole_subcells import whole_subcells
 from cellcolor.data.cells_and_edges import Strand, twin
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
@@ -96,11 +95,10 @@ def unavoidable_join(cells: Sequence[PaintedCell], joinable: Joinable) -> Strand
         other = twin(dart)
         if dart[0] < 0 or other not in shown:
             continue
-        for late in (False, True):
-            for other_late in (False, True):
-                color = shown[dart][late]
-                if color == shown[other][other_late] and color in joinable(dart):
-                    clauses.append(((dart, not late), (other, not other_late)))
+        for late, other_late in product((False, True), repeat=2):
+            color = shown[dart][late]
+            if color == shown[other][other_late] and color in joinable(dart):
+                clauses.append(((dart, not late), (other, not other_late)))
     return _contradiction(clauses)
 
 
@@ -164,11 +162,11 @@ def unconnected_pair(loops: Sequence[PaintedCell]) -> tuple[int, int] | None:
     """Two sub-cells of one color that no chain of loops and sub-cells connects."""
     groups: Groups[int] = Groups()
     for loop in loops:
-        blocks = list(loop.block_of.values())
-        for block in blocks:
-            groups.join(blocks[0], block)
+        for one, other in pairwise(loop.block_of.values()):
+            groups.join(one, other)
     colors = loops[0].colors
-    for one, other in combinations(sorted(b for part in groups.sets() for b in part), 2):
+    blocks = sorted({block for loop in loops for block in loop.block_of.values()})
+    for one, other in combinations(blocks, 2):
         if colors[one] == colors[other] and groups.find(one) != groups.find(other):
             return one, other
     return None
@@ -182,19 +180,12 @@ def on_loops(
     found: PaintedLoops = {}
     for cell, divided in zip(instance.cells, division, strict=True):
         subcells = whole_subcells(divided, virtual)
-        block_of = {
-            dart: number for number, subcell in enumerate(subcells) for dart in subcell.strands
-        }
-        colors = [subcell.color for subcell in subcells]
-        loops = [
-            [strand for dart in loop for strand in strands_along(dart, strands)]
-            for loop in instance.live_loops[cell.id]
-        ]
-        if loops:
-            found[cell.id] = [
-                PaintedCell(loop, {d: block_of[d] for d in loop if d in block_of}, colors)
-                for loop in loops
-            ]
+        block_of = {dart: number for number, sub in enumerate(subcells) for dart in sub.strands}
+        colors = [sub.color for sub in subcells]
+        for live in instance.live_loops[cell.id]:
+            loop = [strand for dart in live for strand in strands_along(dart, strands)]
+            own = {dart: block_of[dart] for dart in loop if dart in block_of}
+            found.setdefault(cell.id, []).append(PaintedCell(loop, own, colors))
     return found
 
 
@@ -204,17 +195,10 @@ def unavoidable_join_on_loops(cells: PaintedLoops, joinable: Joinable) -> Strand
     A loop without darts in state 1 lies in one sub-cell of its cell, whichever suits, and all its
     darts show that color. Such loops are tried one after the other.
     """
-    settled: list[PaintedCell] = []
-    open_loops: list[tuple[PaintedCell, list[int]]] = []
-    for loops in cells.values():
-        colors = sorted(set(loops[0].colors))
-        for loop in loops:
-            if loop.block_of:
-                settled.append(loop)
-            else:
-                open_loops.append((loop, colors))
+    every = [loop for loops in cells.values() for loop in loops]
+    settled = [loop for loop in every if loop.block_of]
+    open_loops = [(loop, sorted(set(loop.colors))) for loop in every if not loop.block_of]
     open_loops.sort(key=lambda item: len(item[1]))
-
     found = unavoidable_join(settled, joinable)
     if found is not None or not open_loops:
         return found
@@ -234,3 +218,76 @@ def unavoidable_join_on_loops(cells: PaintedLoops, joinable: Joinable) -> Strand
         if found is None:
             trail.append(iter(open_loops[len(trail)][1]))
     return found
+
+
+def can_be_drawn(loops: Sequence[Sequence[int]]) -> bool:
+    """Whether a planar cell can be divided into connected sub-cells that meet its loops like this.
+
+    Sub-cells that are met once, or on both sides of nothing else, are drawn at once. If two loops
+    are left that one sub-cell meets, the cell is cut open along a path in this sub-cell from the
+    one to the other, which makes one loop of them. The sub-cell is then in two parts, and each of
+    its other darts belongs to either: both are tried.
+
+    Args:
+        loops: for each loop of the cell the sub-cells of its darts in state 1, in cyclic order.
+    """
+    trail = [iter([[list(loop) for loop in loops]])]
+    while trail:
+        rest = next(trail[-1], None)
+        if rest is None:
+            trail.pop()
+        elif rest := _reduced(rest):
+            trail.append(_cut_open(rest))
+        else:
+            return True
+    return False
+
+
+def _cut_open(rest: list[list[int]]) -> Iterator[list[list[int]]]:
+    """The loops with one less, for each way to part a sub-cell's darts; none if there is none."""
+    where = {(label, number) for number, loop in enumerate(rest) for label in loop}
+    on_loops = Counter(label for label, _ in where)
+    shared = next((label for label, count in on_loops.items() if count > 1), None)
+    if shared is None:
+        return  # sub-cells that interleave on one loop
+    one, other, *more = sorted(rest, key=lambda loop: shared not in loop)
+    left, right = max(on_loops) + 1, max(on_loops) + 2
+    merged = [left, *_after(one, shared), right, *_after(other, shared)]
+    count = sum(loop.count(shared) for loop in [merged, *more])
+    for chosen in product((left, right), repeat=count):
+        sides = iter(chosen)
+        yield [
+            [next(sides) if label == shared else label for label in loop]
+            for loop in [merged, *more]
+        ]
+
+
+def _after(loop: list[int], label: int) -> list[int]:
+    """A loop without one dart of a sub-cell, from there on."""
+    place = loop.index(label)
+    return loop[place + 1 :] + loop[:place]
+
+
+def _reduced(loops: list[list[int]]) -> list[list[int]]:
+    """Without what can be drawn in any case, until nothing changes.
+
+    Darts of one sub-cell that follow each other on a loop count as one. A sub-cell that has only
+    one dart then, and a loop with only one sub-cell, are in nobody's way.
+    """
+    while True:
+        merged = [
+            [
+                label
+                for before, label in zip([loop[-1], *loop], loop, strict=False)
+                if label != before
+            ]
+            or loop[:1]
+            for loop in loops
+            if loop
+        ]
+        counts = Counter(label for loop in merged for label in loop)
+        kept = [[label for label in loop if counts[label] > 1] for loop in merged]
+        kept = [loop for loop in kept if len(loop) > 1]
+        if kept == loops:
+            return kept
+        loops = kept

@@ -40,9 +40,8 @@ def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
     lead from one to the other through vertices of that color (docs/formats.md). This looks at the
     mesh alone, never at the topological graph.
     """
-    count = len(surface.vertices)
-    if len(plan.vertex_colors) != count:
-        given = len(plan.vertex_colors)
+    count, given = len(surface.vertices), len(plan.vertex_colors)
+    if given != count:
         return PlanReport((f"vertex_colors: {given} entries for {count} vertices",), None)
     violations = []
     for vertex, (color, available) in enumerate(
@@ -60,15 +59,11 @@ def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
         violations.append(PlanViolation(vertex, color, (x, y, z), reason))
     if violations:
         return PlanReport(tuple(map(str, violations)), None, violations=tuple(violations))
-    segments: Groups[int] = Groups()
-    for vertex, color in enumerate(plan.vertex_colors):
-        if color is not None:
-            segments.find(vertex)  # makes the vertex a group of its own
+    segments = Groups(v for v, color in enumerate(plan.vertex_colors) if color is not None)
     for a, b in surface.left_of:
         color = plan.vertex_colors[a]
-        if color is None or color != plan.vertex_colors[b]:
-            continue
-        if color not in surface.cracked(a, b):
+        same = color is not None and color == plan.vertex_colors[b]
+        if same and color not in surface.cracked(a, b):
             segments.join(a, b)
     segment_of = [-1] * count
     found = segments.sets()  # in the order of their first vertices

@@ -1,7 +1,8 @@
-"""``cellcolor check``: a solution or a plan against what it was made for, or a trajectory."""
+"""``cellcolor check``: a solution, a plan or a trajectory against what it was made for."""
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,13 +12,11 @@ from cellcolor.checker.claimed_numbers import claims
 from cellcolor.checker.division import check_scheme
 from cellcolor.cli.ending import Exit
 from cellcolor.cli.inputs import STANDARD_INPUT, input_file, name_of, read_subject
-from cellcolor.cli.progress import stages_of
-from cellcolor.cli.terminal import complain, print_json
-from cellcolor.cli.verdict_lines import say_plan, say_solution, say_trajectory
+from cellcolor.cli.terminal import complain, print_json, say, stages_of
 from cellcolor.data.plan import Plan
-from cellcolor.data.schemes import read_schemes
-from cellcolor.data.solution import SchemeKey, Solution, scheme_key
+from cellcolor.data.solution import SchemeKey, Solution, read_schemes, scheme_key
 from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.data.verdicts import (
     CheckedBound,
     CheckError,
@@ -26,7 +25,7 @@ from cellcolor.data.verdicts import (
     PlanViolation,
     SolutionVerdict,
 )
-from cellcolor.data.wording import count, lift_offs_of
+from cellcolor.data.wording import count, lift_offs_of, segments_and_lift_offs
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.installed import find_claim, find_file
 from cellcolor.door.reading import format_of_claim, read_trajectory
@@ -37,6 +36,76 @@ from cellcolor.questions.places import Place
 
 if TYPE_CHECKING:
     from cellcolor.oracle import Verdict
+
+_FAULTS = 3  # of each kind
+_VERTICES = 10
+_SOLVERS = {"cp-sat": "CP-SAT", "cp-sat-model": "CP-SAT"}  # what has proved their bounds
+
+
+def say_plan(name: str, verdict: Verdict) -> None:
+    """What is said of a plan with a name."""
+    say(f"{name}: {'valid' if verdict.valid else 'not valid'}")
+    places = {f"vertex_colors[{found.vertex}]": found.place for found in verdict.violations}
+    for problem in verdict.problems[:_VERTICES]:
+        place = places.get(problem.partition(": ")[0])
+        where = "" if place is None else " at ({:.3f}, {:.3f}, {:.3f}) m".format(*place)
+        say(f"  {problem}{where}")
+    if len(verdict.problems) > _VERTICES:
+        say(f"  {len(verdict.problems) - _VERTICES} more")
+    if verdict.segments is not None:
+        say(f"  {verdict}")
+
+
+def say_solution(name: str, verdict: SolutionVerdict) -> None:
+    """What is said of a solution with a name."""
+    say(f"{name}: {'valid' if verdict.valid else 'not valid'}")
+    for problem in verdict.problems:
+        say(f"  {problem}")
+    if verdict.segments is not None:
+        say(f"  {segments_and_lift_offs(verdict.segments)}")
+    say(f"  status {verdict.status}")
+    if verdict.schemes is not None:
+        say(f"  {count(verdict.schemes, 'scheme')}")
+    _say_bounds(verdict)
+    if verdict.claimed:
+        claimed = (f"{name} {json.dumps(value)}" for name, value in verdict.claimed.items())
+        say(f"  claimed, not verified: {', '.join(claimed)}")
+
+
+def _say_bounds(verdict: SolutionVerdict) -> None:
+    """What came of verifying each bound, and how many of them rest on the solver."""
+    solver = _SOLVERS.get(verdict.solver, verdict.solver)
+    for bound in verdict.bounds:
+        tried = f"{bound.tried} of {bound.budget} choices tried"
+        more = {"verified": tried, "refused": bound.reason}.get(bound.outcome, f"by {solver}")
+        say(f"  at least {bound.value} by {bound.kind}: {bound.outcome}, {more}")
+    if verdict.bounds_by_solver:
+        bounds = count(len(verdict.bounds), "bound")
+        say(f"  {verdict.bounds_by_solver} of {bounds} by {solver}")
+
+
+def say_trajectory(name: str, verdict: TrajectoryVerdict) -> None:
+    """What is said of a trajectory with a name."""
+    said = count(sum(verdict.fault_counts.values()), "fault")
+    say(f"{name}: {'valid' if verdict.valid else f'not valid, {said}'}")
+    for kind, number in verdict.fault_counts.items():
+        first = verdict.of_kind(kind)[:_FAULTS]
+        for fault in first:
+            say(f"  {fault}")
+        if number > len(first):
+            say(f"  {kind}: {number - len(first)} more")
+    seconds = "" if verdict.seconds is None else f", {verdict.seconds:.1f} s"
+    tested = f"{count(verdict.samples, 'sample')}, {count(verdict.tested, 'configuration')} tested"
+    say(f"  {count(verdict.strokes, 'stroke')}, {count(verdict.lift_offs, 'lift-off')}{seconds}")
+    say(f"  {tested}")
+    if verdict.minimum_lift_offs is not None:
+        extra = f"{verdict.claimed_extra} more announced, {verdict.unclaimed_extra} more not"
+        say(f"  fewest lift-offs on this surface, proved: {verdict.minimum_lift_offs}; {extra}")
+    if verdict.covered is not None:
+        say(f"  {verdict.covered}")
+    for line in (*verdict.feed_lines, *verdict.notes):
+        say(f"  {line}")
+
 
 _VIOLATIONS = 100  # of a plan that are listed
 
@@ -99,18 +168,10 @@ def check_files(request: Request) -> Exit:
 
 
 def _check_solution(request: Request, claim: Path) -> Exit:
-    verdict = _on_solution(request.opened(NEVER), claim, request.claim)
-    if request.as_json:
-        print_json(verdict.to_document())
-    else:
-        say_solution(name_of(request.claim), verdict)
-    return Exit.DONE if verdict.valid else Exit.INVALID
-
-
-def _on_solution(subject: Subject, claim: Path, name: str) -> SolutionVerdict:
-    """The verdict on a solution's file, and on the schemes that follow the solution in it."""
+    """Say what is known of a solution, and of the schemes that follow it in its file."""
     from cellcolor.door.judging import check
 
+    subject = request.opened(NEVER)
     instance, solution = subject.graph(), Solution.read(claim)
     on_trust = subject.check_graph()
     report = check(subject, solution)
@@ -134,8 +195,8 @@ def _on_solution(subject: Subject, claim: Path, name: str) -> SolutionVerdict:
     claimed = claims(instance, solution, report.bounds) if report.valid else {}
     if on_trust is not None:
         claimed["instance.surface"] = on_trust
-    return SolutionVerdict(
-        file=name,
+    verdict = SolutionVerdict(
+        file=request.claim,
         valid=not problems,
         problems=tuple(problems),
         segments=report.segments,
@@ -147,6 +208,11 @@ def _on_solution(subject: Subject, claim: Path, name: str) -> SolutionVerdict:
         claimed=claimed,
         schemes=schemes or None,
     )
+    if request.as_json:
+        print_json(verdict.to_document())
+    else:
+        say_solution(name_of(request.claim), verdict)
+    return Exit.DONE if verdict.valid else Exit.INVALID
 
 
 def _checked(found: BoundVerdict) -> CheckedBound:

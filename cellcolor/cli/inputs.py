@@ -13,8 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cellcolor.cli.ending import INTERRUPTS
-from cellcolor.cli.progress import stages_of
-from cellcolor.cli.terminal import complain
+from cellcolor.cli.terminal import complain, stages_of
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.door.installed import extras_for
@@ -89,9 +88,14 @@ def with_tolerance(path: Path, text: str | None) -> Path | Scene:
 def read_subject(path: Path, deadline: Deadline = NEVER, tolerance: str | None = None) -> Subject:
     """The same, for commands that print no report: what a scene warns of goes to standard error."""
     subject = open_file(path, deadline, tolerance)
+    warn_of(path, subject)
+    return subject
+
+
+def warn_of(path: Path, subject: Subject) -> None:
+    """Tell of likely mistakes in a scene."""
     for warning in subject.warnings:
         complain(f"{path}: warning: {warning}")
-    return subject
 
 
 def read_instance(path: Path) -> Instance:

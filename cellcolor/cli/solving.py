@@ -16,11 +16,9 @@ import click
 from cellcolor.checker.claimed_numbers import contradictions
 from cellcolor.cli.ending import INTERRUPTS, Exit, worst
 from cellcolor.cli.inputs import read_subject
-from cellcolor.cli.progress import line_of
 from cellcolor.cli.tables import nothing_to_cover, print_solution
-from cellcolor.cli.terminal import apart_from, complain, print_json
-from cellcolor.data.schemes import scheme_line
-from cellcolor.data.solution import Division, Solution
+from cellcolor.cli.terminal import apart_from, complain, line_of, print_json
+from cellcolor.data.solution import Division, Solution, scheme_line
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.door.subject import Result
@@ -216,7 +214,7 @@ def _with_schemes(
     file: Path, result: Result, deadline: Deadline, most: int, search: dict[str, Any]
 ) -> tuple[Result, list[str]]:
     """The result with all optimal schemes counted, and their lines."""
-    from cellcolor.questions.listing_schemes import with_schemes
+    from cellcolor.door.solving import with_schemes
 
     if INTERRUPTS.seen:
         return replace(result, solution=replace(result.solution, schemes=0, complete=False)), []

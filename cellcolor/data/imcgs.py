@@ -17,7 +17,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import read_text
-from cellcolor.files.paths import path_of
+from cellcolor.files.writing import path_of
 
 _NUMBER = re.compile(r"[+-]?[0-9]{1,9}")
 _CORRECTION = re.compile(r"([0-9]{1,9})=(-1|[0-9]{1,9}),(-1|[0-9]{1,9})")

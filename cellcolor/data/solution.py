@@ -1,18 +1,18 @@
-"""A solver's answer: a division of every cell into colored sub-cells, and its proof."""
+"""A solver's answer: a division of every cell into colored sub-cells, its proof, and schemes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import json
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import combinations
 from os import PathLike
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveInt
 
-from cellcolor.data.bound_kinds import COMPLETE_MODEL, certificate_of, kind_of
-from cellcolor.data.bounds import Bound, Extent
+from cellcolor.data.bounds import COMPLETE_MODEL, Bound, Extent, certificate_of, kind_of
 from cellcolor.data.cells_and_edges import DartName, twin
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance
@@ -20,6 +20,9 @@ from cellcolor.data.value import Document, Value, adapter_of, read_one_of
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
 from cellcolor.files.documents import (
+    is_json,
+    parse_json,
+    read_text,
     take_body,
     validate,
 )
@@ -361,3 +364,38 @@ def number_segments(
         segment = numbers.setdefault(segments[node], len(numbers))
         division[cell].append(SubCell(color, darts, segment))
     return tuple(CellDivision(cell, tuple(subs)) for cell, subs in enumerate(division))
+
+
+@dataclass(frozen=True, slots=True)
+class SchemeLine(Value):
+    """One line of JSON Lines after the solution."""
+
+    FORMAT: ClassVar[str] = "cellcolor/scheme"
+
+    cells: Division
+
+
+def read_schemes(path: str | PathLike[str]) -> Iterator[Division]:
+    """The schemes that follow the solution in a file of JSON Lines; none in any other file.
+
+    Raises:
+        InputError: a line is not a scheme; the field names the line.
+    """
+    head, _, rest = read_text(path).partition("\n")
+    if not is_json(head):
+        return
+    for number, line in enumerate(rest.splitlines(), start=2):
+        try:
+            body = parse_json(line)
+            if body.pop("format", None) != SchemeLine.FORMAT:
+                raise InputError(None, "format", f"must be {SchemeLine.FORMAT!r}")
+            yield SchemeLine.from_document(body).cells
+        except InputError as error:
+            field = f"line {number}" + (f", {error.field}" if error.field else "")
+            raise InputError(str(path), field, error.message) from error
+
+
+def scheme_line(division: Division) -> str:
+    """One line of JSON Lines for one optimal scheme."""
+    document = {"format": SchemeLine.FORMAT} | SchemeLine(division).to_document()
+    return json.dumps(document, ensure_ascii=False)

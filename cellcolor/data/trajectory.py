@@ -1,12 +1,26 @@
-"""Trajectories: joint angles over time, in contact and between, of this planner or another."""
+"""Trajectories: joint angles over time, in contact and between, of this planner or another.
+
+Any planner can also write one as a table of comma-separated values. Its header names the columns,
+in any order: ``contact`` (0 or 1), ``q1`` to the last joint in rad; and if they are known
+``time_s``, ``segment``, the tool's pose ``x``, ``y``, ``z`` in m with the surface's normal ``nx``,
+``ny``, ``nz``, and what the trajectory states of a sample, 0 or 1: ``repeated``, ``unplanned`` and
+``extra_lift_off``.
+"""
 
 from __future__ import annotations
 
+import csv
+import math
+import re
 from dataclasses import dataclass, field
+from io import StringIO
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from cellcolor.arrays import Array, Index, Mask, stretches
 from cellcolor.data.value import (
     Document,
     Integers,
@@ -19,7 +33,8 @@ from cellcolor.data.value import (
     check_lengths,
 )
 from cellcolor.data.wording import count
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
+from cellcolor.files.documents import read_text
 from cellcolor.files.validation import json_content, settle
 
 _ARRAYS = ("joints", "points", "normals", "contact", "segment")
@@ -138,10 +153,7 @@ class Trajectory(WithArrays, Document):
     @property
     def strokes(self) -> tuple[tuple[int, int], ...]:
         """First sample of each stroke, and the one after its last."""
-        steps = np.diff(np.concatenate([[0], self.contact.astype(np.int8), [0]]))
-        return tuple(
-            zip(np.flatnonzero(steps > 0).tolist(), np.flatnonzero(steps < 0).tolist(), strict=True)
-        )
+        return tuple(stretches(self.contact))
 
     @property
     def lift_offs(self) -> int:
@@ -158,3 +170,120 @@ class Trajectory(WithArrays, Document):
         lift_offs = count(self.lift_offs, "lift-off")
         samples = count(len(self.times), "sample")
         return f"{self.name}: {strokes}, {lift_offs}, {self.seconds:.1f} s, {samples}"
+
+
+_POSE = ("x", "y", "z", "nx", "ny", "nz")
+_STATED = ("repeated", "unplanned", "extra_lift_off")
+_OTHERS = ("time_s", "segment", "contact", *_POSE, *_STATED)
+
+
+@dataclass(frozen=True, eq=False)
+class TrajectoryTable:
+    """What a table says of a trajectory.
+
+    Attributes:
+        name: of the file, without its ending.
+        joints: (k, joints) in rad.
+        contact: (k,) whether the tool is on the surface.
+        times: (k,) in s; None without the column.
+        segment: (k,); None without the column.
+        poses: (k, 6) point in m and normal; None without these columns.
+        repeated: (k,) where it runs along an earlier pass on purpose.
+        unplanned: (k,) where the move to the next sample was not planned.
+        extra_lift_off: (k,) the last sample in contact before a lift-off beyond the minimum.
+    """
+
+    name: str
+    joints: Array
+    contact: Mask
+    times: Array | None
+    segment: Index | None
+    poses: Array | None
+    repeated: Mask
+    unplanned: Mask
+    extra_lift_off: Mask
+
+
+def read_trajectory_csv(path: str | PathLike[str]) -> TrajectoryTable:
+    """The table in a file.
+
+    Raises:
+        InputError: unreadable, no such table, or a cell that is not what its column says; names
+            file, line and column.
+    """
+    with naming(path):
+        return _parsed(Path(path).stem, read_text(path))
+
+
+def _parsed(name: str, text: str) -> TrajectoryTable:
+    reader = csv.reader(StringIO(text.removeprefix("\ufeff"), newline=""), strict=True)
+    try:
+        columns = [cell.strip() for cell in next(reader, [])]
+        joints = _checked(columns)
+        rows = []
+        for cells in reader:
+            if not cells:  # an empty line
+                continue
+            line = f"line {reader.line_num}"
+            if len(cells) != len(columns):
+                message = f"has {len(cells)} cells, the header has {len(columns)} columns"
+                raise InputError(None, line, message)
+            rows.append(
+                [_number(cell, f"{line}, column {columns[k]}") for k, cell in enumerate(cells)]
+            )
+            _check_kinds(columns, rows[-1], line)
+    except csv.Error as error:
+        raise InputError(None, f"line {reader.line_num}", f"is not CSV: {error}") from error
+    table = np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
+    place = {column: k for k, column in enumerate(columns)}
+    return TrajectoryTable(
+        name=name,
+        joints=table[:, [place[joint] for joint in joints]],
+        contact=table[:, place["contact"]] == 1,
+        times=table[:, place["time_s"]] if "time_s" in place else None,
+        segment=table[:, place["segment"]].astype(np.int64) if "segment" in place else None,
+        poses=table[:, [place[title] for title in _POSE]] if "x" in place else None,
+        **{
+            title: table[:, place[title]] == 1
+            if title in place
+            else np.zeros(len(rows), dtype=bool)
+            for title in _STATED
+        },
+    )
+
+
+def _checked(columns: list[str]) -> list[str]:
+    """The columns of the joints, base first, of a header that is as it has to be."""
+    for number, column in enumerate(columns, start=1):
+        field = f"line 1, column {number}"
+        if column in columns[: number - 1]:
+            raise InputError(None, field, f"{column!r} appears twice")
+        if column not in _OTHERS and not re.fullmatch(r"q[1-9][0-9]?", column):
+            known = ", ".join((*_OTHERS, "q1", "q2", "…"))
+            raise InputError(None, field, f"{column!r} is not a known column: {known}")
+    joints = [f"q{k}" for k in range(1, 1 + sum(column.startswith("q") for column in columns))]
+    needed = ["contact", *(joints or ["q1"])]
+    if set(columns) & set(_POSE):
+        needed += _POSE
+    missing = [column for column in needed if column not in columns]
+    if missing:
+        raise InputError(None, "line 1", f"there is no column {missing[0]}")
+    return joints
+
+
+def _number(cell: str, field: str) -> float:
+    try:
+        number = float(cell)
+    except ValueError as error:
+        raise InputError(None, field, f"is not a number: {cell.strip()[:40]!r}") from error
+    if not math.isfinite(number):
+        raise InputError(None, field, "is not a finite number")
+    return number
+
+
+def _check_kinds(columns: list[str], row: list[float], line: str) -> None:
+    for column, number in zip(columns, row, strict=True):
+        if column in ("contact", *_STATED) and number not in (0, 1):
+            raise InputError(None, f"{line}, column {column}", f"must be 0 or 1, is {number:g}")
+        if column == "segment" and (number != int(number) or abs(number) > 2**53):
+            raise InputError(None, f"{line}, column segment", f"must be an integer, is {number:g}")

@@ -1,9 +1,11 @@
-"""Numbers and lists as a person would say them."""
+"""Numbers and lists as a person would say them, and how large shares and prices may be."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+
+from cellcolor.errors import InputError
 
 
 def count(number: int, thing: str, things: str | None = None) -> str:
@@ -54,3 +56,35 @@ def looks_like_degrees(angle: float) -> str:
 def beyond_turns(angle: float, turns: int) -> bool:
     """Whether an angle in rad is more than so many full circles: then it must be degrees."""
     return abs(angle) > 2 * math.pi * turns + 0.01  # 6.2832 is a full circle as well
+
+
+MOST_PRICE = 1_000_000
+"""Of a change-over, in lift-offs. Prices are added in floating point, which has 53 bits: up to this
+limit a sum is right to far less than a thousandth of a lift-off."""
+
+_BINARY = 1e-6
+"""How far 1000 times a price with three decimals may be from a whole number, in floating point."""
+
+
+def check_share(name: str, share: float | None) -> None:
+    """Refuse a share that is not from 0 to 1; None is none.
+
+    Raises:
+        InputError: it is not.
+    """
+    if share is not None and not 0 <= share <= 1:
+        raise InputError(None, name, f"must be from 0 to 1, is {share:g}")
+
+
+def check_change_over(price: float) -> None:
+    """Refuse what a change-over cannot cost: less than the lift-off that it takes, for example.
+
+    Raises:
+        InputError: it is out of its range, or finer than a thousandth of a lift-off.
+    """
+    if not 1 <= price <= MOST_PRICE:
+        message = f"must be a number from 1 to {MOST_PRICE}, is {price:g}"
+        raise InputError(None, "change_over", message)
+    if abs(1000 * price - round(1000 * price)) > _BINARY:
+        message = f"must have no more than three decimals, is {price}"
+        raise InputError(None, "change_over", message)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from cellcolor.data.wording import count, span
 from cellcolor.errors import InputError
-from cellcolor.files.paths import path_of, shipped_folder
+from cellcolor.files.writing import path_of, shipped_folder
 
 if TYPE_CHECKING:
     from cellcolor.data.library_index import LibraryIndex

@@ -9,11 +9,10 @@ from pathlib import Path
 from typing import Any, Unpack, overload
 
 from cellcolor.checker.claimed_numbers import contradictions
-from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import Report, check_solution
+from cellcolor.checker.groups import regions_on_surface
 from cellcolor.data.solution import Solution
-from cellcolor.data.trajectory import Trajectory
-from cellcolor.data.trajectory_csv import TrajectoryTable
+from cellcolor.data.trajectory import Trajectory, TrajectoryTable
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.data.wording import lift_offs_of
 from cellcolor.deadline import Deadline, TimeLimit
@@ -21,7 +20,7 @@ from cellcolor.door.asked import Search
 from cellcolor.door.installed import extras_for, find_claim
 from cellcolor.door.oracle import SECONDS, AnyPlan, Oracle
 from cellcolor.door.reading import ReadTrajectory, format_of_claim, read_trajectory
-from cellcolor.door.subject import Result, Solvable, Subject, open_subject
+from cellcolor.door.subject import Result, Solvable, Subject, open_subject, solution_of
 from cellcolor.oracle import ProvenRange, Verdict, prove
 from cellcolor.questions.places import Place
 
@@ -97,10 +96,7 @@ def check(
     subject = open_subject(instance).left_alone(left_alone)
     subject.check_graph()
     graph = subject.graph()
-    if isinstance(claim, Result):
-        claim = claim.solution
-    if not isinstance(claim, Solution):
-        claim = Solution.read(claim)
+    claim = solution_of(claim)
     regions = None
     if subject.given_surface is not None:
         cells = subject.decomposition.vertex_cell
@@ -126,7 +122,7 @@ def judge_trajectory(
     built = subject.build()
     with extras_for("the front end"):
         from cellcolor.trajectory_checker.check import check_trajectory
-        from cellcolor.trajectory_checker.other_planners import completed
+        from cellcolor.trajectory_checker.stated import completed
         from cellcolor.trajectory_checker.tolerances import Limits
 
     report = progress or (lambda _: None)

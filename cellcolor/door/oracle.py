@@ -16,12 +16,10 @@ from numpy.typing import NDArray
 
 from cellcolor.checker.division import check_solution
 from cellcolor.checker.vertex_plan import PlanReport, check_plan
-from cellcolor.data.joint_plan import ContactPath, JointPlan
-from cellcolor.data.plan import Plan
+from cellcolor.data.plan import ContactPath, JointPlan, Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.data.trajectory import Trajectory
-from cellcolor.data.trajectory_csv import TrajectoryTable
+from cellcolor.data.trajectory import Trajectory, TrajectoryTable
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.door.asked import Search, options_of
 from cellcolor.door.joint_plans import AnyPath, PathColors, colors_of_joints, colors_of_path
@@ -176,9 +174,9 @@ class Oracle:
             plan: one color per vertex, its number or its name, None exactly where the vertex has
                 none; in an array of integers, which cannot hold None, -1. Or a plan, a solution of
                 the surface, or the file of one. Or a configuration per vertex
-                (:class:`cellcolor.JointPlan <cellcolor.data.joint_plan.JointPlan>`). Or a tool
+                (:class:`cellcolor.JointPlan <cellcolor.data.plan.JointPlan>`). Or a tool
                 path with its joints
-                (:class:`cellcolor.ContactPath <cellcolor.data.joint_plan.ContactPath>`), a
+                (:class:`cellcolor.ContactPath <cellcolor.data.plan.ContactPath>`), a
                 trajectory, or the file of one, JSON or CSV.
             deadline: for all of it; None for the time limit. Where it comes before a better
                 painting is finished, the verdict has no ``improvement``.
@@ -246,14 +244,15 @@ class Oracle:
 
     def _of_path(self, found: PathColors, deadline: Deadline) -> PathVerdict:
         """The verdict on a tool path, by what it comes to in colors."""
-        alike = ("plan", "strokes", "color_changes", "reachable")
-        about: dict[str, Any] = {name: getattr(found, name) for name in alike}
-        about |= {"surface": self.surface, "untouched": len(found.violations)}
+        coloring = found.coloring
+        about: dict[str, Any] = {"surface": self.surface, "plan": coloring.plan}
+        about |= {"strokes": found.strokes, "color_changes": coloring.color_changes}
+        about |= {"reachable": found.reachable, "untouched": len(found.violations)}
         if found.problems:
             return PathVerdict(found.problems, None, self._known, found.violations, **about)
-        of_colors = self._of_colors(found.plan, deadline)
+        of_colors = self._of_colors(coloring.plan, deadline)
         own = {member.name: getattr(of_colors, member.name) for member in fields(Verdict)}
-        return PathVerdict(**own | about, runs=found.runs)
+        return PathVerdict(**own | about, runs=coloring.runs)
 
     def __repr__(self) -> str:
         proved = "" if self._proof is None else f", {self._proof.bounds}"

@@ -1,4 +1,4 @@
-"""What ``cellcolor.plan`` gives: a planned scene, or as much of one as there was time for."""
+"""What ``cellcolor.plan`` gives, as far as there was time for it, and the files of its folder."""
 
 from __future__ import annotations
 
@@ -23,7 +23,6 @@ from cellcolor.deadline import OutOfTime
 from cellcolor.door.subject import Result, Subject
 from cellcolor.errors import InputError
 from cellcolor.exports.registry import EXPORTS, exported, programs_of, why_no_program
-from cellcolor.files.paths import path_of
 from cellcolor.files.writing import (
     HTML,
     SIDE_FILE,
@@ -32,6 +31,7 @@ from cellcolor.files.writing import (
     check_output,
     is_folder_or_nothing,
     kind_of_format,
+    path_of,
     write,
 )
 from cellcolor.painting.paint import Painted

@@ -9,8 +9,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cellcolor.data.prices import check_share
-from cellcolor.data.wording import listed
+from cellcolor.data.wording import check_share, listed
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.door.asking import explain, place, tradeoff
 from cellcolor.door.installed import require_motion
@@ -30,8 +29,8 @@ from cellcolor.solvers.interface import Options
 if TYPE_CHECKING:
     from cellcolor.data.trajectory_verdict import TrajectoryVerdict
     from cellcolor.frontend import Scene
+    from cellcolor.frontend.build import StageClock
     from cellcolor.frontend.prepared import PreparedScene
-    from cellcolor.frontend.stage_clock import StageClock
     from cellcolor.motion.plan import MotionPlan
     from cellcolor.motion.scene_painting import ScenePainting
     from cellcolor.pictures.report_page.content import AnsweredScene, Answers
@@ -91,11 +90,10 @@ def plan(
     given_or_file = scene_or_file(scene)
     require_motion("planning a motion", _NEEDED)
     find_pattern(pattern or DEFAULT_PATTERN)
+    from cellcolor.frontend.build import StageClock
     from cellcolor.frontend.prepared import prepare
     from cellcolor.frontend.scene import Scene
-    from cellcolor.frontend.stage_clock import StageClock
-    from cellcolor.motion.home import home_of
-    from cellcolor.motion.limits import motion_of
+    from cellcolor.motion.limits import home_of, motion_of
 
     clock = StageClock(deadline, progress)
     given = Scene.read(given_or_file) if isinstance(given_or_file, Path) else given_or_file
@@ -229,7 +227,7 @@ class _Run:
                 progress=self._progress,
             )
         if len(painting.painted.minima) > 1:  # the surface was refined and solved again
-            subject = Subject(subject.path, painting.built, painting.built.surface)
+            subject = Subject(subject.path, painting.built)
             result = self._with_notes(Result(painting.solution, subject))
         self._has(subject=subject, result=result, painted=painting.painted)
         with self._clock.timed("motion"):
@@ -260,7 +258,7 @@ def _without_cut_off(driven: _Driven) -> Subject | None:
     surface = built.surface.without_colors(driven.planned.cut_off)
     if surface.vertex_colors == built.surface.vertex_colors:
         return None
-    return Subject(driven.subject.path, replace(built, surface=surface), surface)
+    return Subject(driven.subject.path, replace(built, surface=surface))
 
 
 def _cut_off_in_words(driven: _Driven) -> str:
@@ -287,7 +285,7 @@ def _built(prepared: PreparedScene, path: Path | None, clock: StageClock) -> Sub
     from cellcolor.frontend.build import build_prepared
 
     built = build_prepared(prepared, clock)
-    subject = Subject(path, built, built.surface)
+    subject = Subject(path, built)
     if subject.graph(clock.deadline).nothing_to_cover:
         raise NothingCovered(built.report, str(prepared.scene.file or "") or None)
     return subject

@@ -1,4 +1,4 @@
-"""Values and claims in files: ``cellcolor.read``, and plans, solutions and trajectories by type."""
+"""Files as values: ``cellcolor.read``, claims of all types, and joint solutions to be labelled."""
 
 from __future__ import annotations
 
@@ -19,8 +19,7 @@ from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPaths
-from cellcolor.data.trajectory import Trajectory
-from cellcolor.data.trajectory_csv import TrajectoryTable, read_trajectory_csv
+from cellcolor.data.trajectory import Trajectory, TrajectoryTable, read_trajectory_csv
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.data.value import Document, read_one_of
 from cellcolor.deadline import NEVER, Deadline
@@ -28,7 +27,7 @@ from cellcolor.door.installed import extras_for, find_file
 from cellcolor.door.subject import is_scene
 from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import read_document, read_text
-from cellcolor.files.paths import path_of
+from cellcolor.files.writing import path_of
 
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene, Setup

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from cellcolor.data.prices import check_change_over, check_share
+from cellcolor.data.wording import check_change_over, check_share
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.asked import SearchAndTell, options_of
 from cellcolor.door.installed import extras_for

@@ -1,7 +1,8 @@
-"""``cellcolor.build``, ``cellcolor.decompose`` and ``cellcolor.solve``."""
+"""``cellcolor.build``, ``cellcolor.decompose`` and ``cellcolor.solve``, of all or of a part."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from math import degrees
@@ -11,9 +12,9 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 
 from cellcolor.data.instance import Instance
-from cellcolor.data.prices import check_share
-from cellcolor.data.solution import SearchSpace, Solution
+from cellcolor.data.solution import Division, SearchSpace, Solution
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.wording import check_share
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.decomposition import decomposition_of
 from cellcolor.door.asked import SearchOfAPart, Work, begun, options_of
@@ -25,10 +26,10 @@ from cellcolor.door.subject import (
     open_subject,
     scene_or_file,
 )
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, TooLarge
 from cellcolor.questions.places import Place
 from cellcolor.solvers import checked
-from cellcolor.solvers.interface import STRANDS, Options
+from cellcolor.solvers.interface import STRANDS, Options, Start
 from cellcolor.solvers.registry import DEFAULT
 
 if TYPE_CHECKING:
@@ -220,3 +221,52 @@ def _without_cells(subject: Subject, cells: tuple[int, ...]) -> Subject:
     if subject.given_instance is not None:
         return Subject(None, given_instance=subject.given_instance.without_cells(cells)[0])
     return subject.without_vertices(np.isin(subject.decomposition.vertex_cell, cells))
+
+
+def with_schemes(
+    instance: Instance,
+    solution: Solution,
+    solver: str,
+    options: Options,
+    most: int,
+    take: Callable[[Division], None],
+) -> Solution:
+    """A solution with its optimal schemes counted.
+
+    One more than the most that are wanted is looked for: only so is it known whether there are
+    others. A solver may end the search at any moment by an ``OutOfTime``; schemes that were taken
+    beyond ``schemes`` of the result do not count.
+
+    Args:
+        solution: of the instance, in the search space ``paper``. If its number is not proved, no
+            scheme is looked for.
+        most: how many are wanted.
+        take: given each scheme.
+
+    Raises:
+        InputError: the solver lists no schemes, or none of this instance.
+        RefusedResult: the checker refuses what the solver found.
+    """
+    if solution.status != "optimal" or solution.segments is None:
+        return replace(solution, schemes=0, complete=False)
+    started = time.monotonic()
+    found, complete, notes = 0, True, solution.notes
+    counted: list[int] = []
+    known = None if solution.cells is None else Start(solution.cells, solution.seams)
+    try:
+        for division in checked.enumerate_schemes(
+            instance, options, solver, solution.segments, known, counted.append
+        ):
+            if found == most:
+                complete = False
+                break
+            take(division)
+            found += 1
+    except OutOfTime:
+        complete = False
+    except TooLarge as error:
+        complete, notes = False, (*notes, str(error))
+    if not complete and counted:
+        notes = (*notes, f"There are {counted[0]:,} optimal schemes; {found:,} of them are listed.")
+    seconds = solution.seconds + time.monotonic() - started
+    return replace(solution, schemes=found, complete=complete, seconds=seconds, notes=notes)

@@ -32,8 +32,14 @@ from cellcolor.door.starting_choices import (
 )
 from cellcolor.door.starting_texts import MARK, SCENE, SETUP, TOOL
 from cellcolor.errors import InputError, naming
-from cellcolor.files.paths import path_of
-from cellcolor.files.writing import FileKind, Output, check_output, is_folder_or_nothing, write
+from cellcolor.files.writing import (
+    FileKind,
+    Output,
+    check_output,
+    is_folder_or_nothing,
+    path_of,
+    write,
+)
 
 if TYPE_CHECKING:
     from cellcolor.frontend.arm.robot import Robot
@@ -209,7 +215,7 @@ def arm_of(
     with naming(urdf):
         for name in arm.leading.keys() & fixed:
             check_position(arm, name, fixed[name])
-        still, _ = settled(arm, fixed)
+        still = settled(arm, fixed)
     chain, moving = arm.chain(flange), arm.leading.keys() - still
     moved = next((at for at, link in enumerate(chain) if arm.joint_above.get(link) in moving), 0)
     standing = [link for link in chain[: moved + 1] if link in arm.shapes]

@@ -277,8 +277,7 @@ def _home_over(prepared: PreparedScene) -> tuple[list[float], str] | None:
 def home_of(prepared: PreparedScene) -> tuple[list[float] | None, str]:
     """A free position over the part, or near the middle of the joints' limits, rad; and which."""
     from cellcolor.motion.free_space import FreeSpace
-    from cellcolor.motion.home import free_near
-    from cellcolor.motion.limits import motion_of
+    from cellcolor.motion.limits import free_near, motion_of
 
     over = _home_over(prepared)
     if over is not None:

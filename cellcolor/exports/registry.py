@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from contextlib import suppress
 
-from cellcolor.exports import joint_table, joint_trajectory, programs
+from cellcolor.exports import joint_files, programs
 from cellcolor.exports.interface import Export, NotForThisArm, PlannedMotion
 from cellcolor.exports.languages import LANGUAGES
 
 EXPORTS = {
-    "joints.csv": Export(joint_table.KIND, joint_table.joints_csv),
-    "joint_trajectory.yaml": Export(joint_trajectory.KIND, joint_trajectory.joint_trajectory_yaml),
+    "joints.csv": Export(joint_files.TABLE, joint_files.joints_csv),
+    "joint_trajectory.yaml": Export(joint_files.MESSAGES, joint_files.joint_trajectory_yaml),
     **programs.PROGRAMS,
 }
 """The files beside those of cellcolor's own formats in the folder of a plan."""

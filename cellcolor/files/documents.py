@@ -12,7 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails
 
 from cellcolor.errors import InputError, naming
-from cellcolor.files.paths import path_of
+from cellcolor.files.writing import path_of
 
 T = TypeVar("T")
 

@@ -11,11 +11,37 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 from typing import ClassVar, Protocol
 
 from cellcolor.errors import InputError
 from cellcolor.signals import handled_by
+
+
+def path_of(name: str | PathLike[str]) -> Path:
+    """The path that a file's name stands for.
+
+    Raises:
+        InputError: it is neither a text nor a path, an empty text, or the content of a file.
+    """
+    if isinstance(name, str) and name.lstrip().startswith(("{", "[")):
+        start = f"{name[:30]}…" if len(name) > 30 else name
+        raise InputError(None, None, f"{start!r} is the content of a file, not its name")
+    try:
+        if isinstance(name, str) and not name:
+            raise TypeError  # pathlib would take it for the folder that one is in
+        return Path(name)
+    except TypeError as error:
+        raise InputError(None, None, f"{name!r:.100} is not a file name") from error
+
+
+def shipped_folder() -> Path:
+    """The folder that has ``instances`` and ``models``."""
+    package = Path(__file__).parents[1]
+    inside = package / "shipped"
+    return inside if inside.is_dir() else package.parent
+
 
 MARKER = "cellcolor/picture"
 """The mark of every picture of ours: the ``generator`` of an HTML page, the ``Creator`` of a PNG or

@@ -1,9 +1,11 @@
-"""From a scene to a labelled surface."""
+"""From a scene to a labelled surface, stage by stage."""
 
 from __future__ import annotations
 
 import importlib.metadata
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from os import PathLike
@@ -28,8 +30,44 @@ from cellcolor.frontend.reach.slivers import SliverReport, clean
 from cellcolor.frontend.reach.validity import Verdicts
 from cellcolor.frontend.report import BuildReport, report_on
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.version import __version__
+
+Progress = Callable[[str], None]
+"""Told the name of each stage as it begins."""
+
+
+class StageClock:
+    """What one build has spent its time on.
+
+    Attributes:
+        deadline: when to give up.
+        seconds: wall time of each timed stage, in the order in which they first ended; of a stage
+            that came several times, the sum.
+    """
+
+    def __init__(self, deadline: Deadline, progress: Progress | None) -> None:
+        self.deadline, self._progress = deadline, progress
+        self.seconds: dict[str, float] = {}
+
+    def begin(self, stage: str) -> None:
+        """A stage begins.
+
+        Raises:
+            OutOfTime: the deadline has come.
+        """
+        self.deadline.check()
+        if self._progress is not None:
+            self._progress(stage)
+
+    @contextmanager
+    def timed(self, stage: str) -> Iterator[None]:
+        """A stage from its beginning to its end; raises like :meth:`begin`."""
+        self.begin(stage)
+        started = time.perf_counter()
+        yield
+        spent = time.perf_counter() - started
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + spent
+
 
 TURN_NOT_DEFINED = "turn not defined"
 """The reason at a vertex where the setup's rule for the tool's turn says nothing."""
@@ -273,7 +311,7 @@ def _judged(prepared: PreparedScene, clock: StageClock) -> tuple[Verdicts, Mask,
     are continuous, and which of them are valid between the vertices as well."""
     verdicts = judged_at_vertices(prepared, clock)
     with clock.timed("continuity"):
-        edges = prepared.surface.edges()
+        edges = prepared.surface.mesh.edges
         continuous = continuous_along(prepared, edges, verdicts, clock.deadline)
     with clock.timed("validity between vertices"):
         linked = valid_along(prepared, verdicts, continuous, clock.deadline)
@@ -300,11 +338,11 @@ def colored(
     """
     surface, branches = prepared.surface, prepared.arm.kinematics.branches
     with clock.timed("colors and cracks"):
-        edges, policy, report = surface.edges(), prepared.setup.slivers, None
+        edges, policy, report = surface.mesh.edges, prepared.setup.slivers, None
         coloring = all_colors = color_nodes(verdicts.valid, edges, linked, branches)
         clock.deadline.check()
         if policy is not None:
-            areas = surface.vertex_areas()
+            areas = surface.mesh.vertex_areas
             kept, report = clean(edges, all_colors, areas, policy, clock.deadline)
             coloring = color_nodes(kept, edges, linked & kept[edges].all(axis=1), branches)
     clock.begin("surface")
@@ -340,7 +378,7 @@ def _limited(prepared: PreparedScene, verdicts: Verdicts, coloring: Coloring) ->
     if not prepared.setup.constraints.collision:  # joint limits are not asked about either
         nowhere = np.full(robot.joints, np.inf)
         robot = replace(robot, lower=-nowhere, upper=nowhere)
-    return limit_colors(robot, coloring, verdicts.configurations, prepared.surface.edges())
+    return limit_colors(robot, coloring, verdicts.configurations, prepared.surface.mesh.edges)
 
 
 def _vertex_colors(limits: LimitColors, vertices: int) -> tuple[tuple[int, ...], ...]:

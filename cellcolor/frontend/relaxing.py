@@ -19,14 +19,12 @@ import numpy as np
 
 from cellcolor.arrays import Mask
 from cellcolor.deadline import Deadline
-from cellcolor.frontend.build import BuildResult, colored
+from cellcolor.frontend.build import BuildResult, StageClock, colored
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.links import continuous_along, valid_along
 from cellcolor.frontend.prepared import PreparedScene, named
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.reach.validity import Verdicts
-from cellcolor.frontend.reach.validity_tests import JointLimits
-from cellcolor.frontend.stage_clock import StageClock
 
 Apply = Callable[[PreparedScene, float], PreparedScene]
 """A scene, and by how much the restriction is weakened, infinite if it is left out: the scene with
@@ -212,7 +210,7 @@ def _obstacle(prepared: PreparedScene, here: int) -> Relaxation:
         if np.isfinite(amount):
             vertices, _ = obstacle.shell(there.scene.folder)
             surface, middle = there.surface, obstacle.placed(vertices).mean(axis=0)
-            away = middle - np.average(surface.vertices, axis=0, weights=surface.vertex_areas())
+            away = middle - np.average(surface.vertices, axis=0, weights=surface.mesh.vertex_areas)
             step = amount * away / max(float(np.linalg.norm(away)), 1e-9)
             position = tuple((np.array(obstacle.position_m) + step).tolist())
             moved = obstacle.model_copy(update={"position_m": position})
@@ -292,7 +290,7 @@ def built_asking_less(
         reasons: the tests that ask for less. A candidate becomes valid only if one of them was the
             first that it failed.
     """
-    deadline, edges = clock.deadline, prepared.surface.edges()
+    deadline, edges = clock.deadline, prepared.surface.mesh.edges
     codes = [prepared.judge.reason_names.index(reason) for reason in reasons]
     clock.begin("validity at the vertices")
     verdicts = _judged_there(prepared, before, np.isin(before.reasons, codes), deadline)
@@ -318,13 +316,13 @@ def built_asking_more(
         before: of the scene that asks for less. Its arm's solutions have names.
         reasons: the tests that ask for more.
     """
-    deadline, edges = clock.deadline, prepared.surface.edges()
+    deadline, edges = clock.deadline, prepared.surface.mesh.edges
     strict = replace(prepared, left_out=frozenset(prepared.judge.reason_names) - set(reasons))
     clock.begin("validity at the vertices")
     verdicts = _judged_there(strict, before, before.verdicts.valid, deadline)
     clock.begin("continuity")
     continuous = before.continuous & verdicts.valid[edges].all(axis=1)
-    if JointLimits.name in reasons:
+    if "joint limits" in reasons:
         rows = np.flatnonzero(continuous.any(axis=1))
         continuous[rows] &= continuous_along(prepared, edges[rows], verdicts, deadline)
     clock.begin("validity between vertices")

@@ -29,7 +29,7 @@ from pydantic import (
 from cellcolor.data.wording import beyond_turns, looks_like_degrees
 from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import first_fault, read_text
-from cellcolor.files.paths import path_of
+from cellcolor.files.writing import path_of
 from cellcolor.registered import find, load
 
 Positive = Annotated[FiniteFloat, Field(gt=0)]

@@ -13,10 +13,19 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.motion.following import Followed, blocked, follow, joint_space, off_way, unwound
-from cellcolor.motion.refusing import ArmRefusals
-from cellcolor.motion.samples import Samples, even_places, sampled, with_normals_of
-from cellcolor.motion.small_triangles import JUMP
+from cellcolor.motion.following import (
+    Followed,
+    Samples,
+    blocked,
+    even_places,
+    follow,
+    joint_space,
+    off_way,
+    sampled,
+    unwound,
+    with_normals_of,
+)
+from cellcolor.motion.small_triangles import JUMP, ArmRefusals
 from cellcolor.tool_paths.cover import Covered
 
 _ROUNDS = 5  # of paths laid out; what still fails on the last ones is cut out of them

@@ -9,7 +9,6 @@ import numpy as np
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.body import Body, Shape
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, Pair, always_touching, pairs_of, poses_along
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.following import joint_space
@@ -50,8 +49,8 @@ class FreeSpace:
         self._place, self._on = place, prepared.setup.constraints.collision
         self.space = joint_space(prepared)
         self._leaving, margins, room = leaving, prepared.setup.margins, share * clearance
-        last, tip = _last(robot), place.tip.body
-        if last is not None:
+        last, tip = len(robot.bodies) - 1, place.tip.body
+        if robot.bodies:
             tip = replace(tip, link=robot.bodies[last].link)
         self._tip = tip
         moving = [body for body in reversed(robot.bodies) if body.joint > 0]
@@ -128,12 +127,3 @@ class FreeSpace:
         if isinstance(thing, Shape):
             return self._things[id(thing)]
         return "the tool's tip" if thing is self._tip else thing.link
-
-
-def _last(robot: Robot) -> int | None:
-    """The number of the last body that the chain of joints carries; None of an arm without any.
-
-    Bodies on frames beside the chain (:attr:`Robot.followers`) may stand after the tool's.
-    """
-    carried = [k for k, body in enumerate(robot.bodies) if body.joint <= robot.joints]
-    return max(carried, default=len(robot.bodies) - 1 if robot.bodies else None)

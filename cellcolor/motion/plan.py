@@ -12,8 +12,7 @@ from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import LeftOut, Trajectory
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.build import BuildResult
-from cellcolor.frontend.stage_clock import Progress, StageClock
+from cellcolor.frontend.build import BuildResult, Progress, StageClock
 from cellcolor.motion.assembly import assembled
 from cellcolor.motion.following import joint_space
 from cellcolor.motion.limits import motion_of, speeds_of

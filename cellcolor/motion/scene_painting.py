@@ -16,9 +16,8 @@ from cellcolor.arrays import Index, unit
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of
-from cellcolor.frontend.build import BuildResult, build_prepared
+from cellcolor.frontend.build import BuildResult, Progress, StageClock, build_prepared
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.motion.posture import color_costs, with_best_posture
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import Painted, paint
@@ -118,7 +117,7 @@ def _refused(painted: Painted, finer: BuildResult, branch: Index) -> tuple[int, 
     own = np.array([-1 if color is None else branch[color] for color in colors])
     colored = np.flatnonzero(own >= 0)
     refused = set(colored[~finer.verdicts.valid[colored, own[colored]]].tolist())
-    edges, linked = finer.prepared.surface.edges(), finer.all_colors.linked
+    edges, linked = finer.prepared.surface.mesh.edges, finer.all_colors.linked
     segment = painted.segment_of
     within = np.flatnonzero(
         (segment[edges[:, 0]] == segment[edges[:, 1]]) & (own[edges[:, 0]] >= 0)

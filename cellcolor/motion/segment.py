@@ -15,13 +15,11 @@ from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
 from cellcolor.motion.courses import Course, laid_out
 from cellcolor.motion.following import joint_space
-from cellcolor.motion.refusing import ArmRefusals
-from cellcolor.motion.small_triangles import CornerStates
+from cellcolor.motion.small_triangles import ArmRefusals, CornerStates
 from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
 from cellcolor.motion.windings import steps_of, walls_of
 from cellcolor.tool_paths.cover import Bounds, Covered, cover
-from cellcolor.tool_paths.overlap import Overlap
-from cellcolor.tool_paths.region import Segments
+from cellcolor.tool_paths.region import Overlap, Segments
 
 _SHORT = 2.0  # spacings; no place of such a stroke is as large as a footprint
 _SPARED = 0.005  # of the strokes' length, at most, of what is left out because it is short

@@ -9,8 +9,7 @@ import numpy as np
 from cellcolor.arrays import Array, Index
 from cellcolor.data.candidate_table import VALID
 from cellcolor.frontend.arm.joint_space import JointSpace
-from cellcolor.motion.following import Followed
-from cellcolor.motion.samples import Samples
+from cellcolor.motion.following import Followed, Samples
 
 _SAME = 1e-9  # m; ends of a path that are nearer are one point
 

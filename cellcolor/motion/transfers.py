@@ -14,11 +14,11 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.contact.engine import Contacts, poses_along
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
+from cellcolor.motion.following import DISTANCE
 from cellcolor.motion.free_space import FreeSpace
-from cellcolor.motion.home import home_of
-from cellcolor.motion.samples import DISTANCE
+from cellcolor.motion.limits import home_of
+from cellcolor.motion.order import Visit, chosen_turns
 from cellcolor.motion.strokes import Stroke
-from cellcolor.motion.turns import Visit, chosen_turns
 from cellcolor.motion.ways import Transfer, Ways
 
 # Bounds in rad are in units of a slide as well (JointSpace.units).

@@ -15,9 +15,8 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
-from cellcolor.motion.following import joint_space
+from cellcolor.motion.following import DISTANCE, TURN, joint_space
 from cellcolor.motion.free_space import FreeSpace
-from cellcolor.motion.samples import DISTANCE, TURN
 
 # Bounds in rad are in units of a slide as well (JointSpace.units).
 _SHARES = (1.0, 0.4, 0.1)  # of the clearance that the ends of a way keep, the most that they can

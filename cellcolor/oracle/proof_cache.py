@@ -11,8 +11,8 @@ from functools import cache
 from pathlib import Path
 
 import cellcolor
-from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import check_solution
+from cellcolor.checker.groups import regions_on_surface
 from cellcolor.data.bounds import greatest
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface

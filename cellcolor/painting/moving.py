@@ -24,9 +24,8 @@ from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, RefusedResult
-from cellcolor.painting.nearby import Nearby
 from cellcolor.painting.paint import BorderMeasures, BorderReport, Painted
-from cellcolor.painting.relabelling import Relabelling
+from cellcolor.painting.relabelling import Nearby, Relabelling
 
 
 def move_borders(

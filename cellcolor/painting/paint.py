@@ -9,8 +9,8 @@ from heapq import heapify, heappop, heappush
 import numpy as np
 
 from cellcolor.arrays import Array, Index
+from cellcolor.checker.dart_lists import WholeSubCell
 from cellcolor.checker.vertex_plan import check_plan
-from cellcolor.checker.whole_subcells import WholeSubCell
 from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
@@ -21,8 +21,14 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition
 from cellcolor.decomposition.borders import Borders
 from cellcolor.errors import InputError, RefusedResult
-from cellcolor.painting.gates import choose_gates, steps_by_edge, subcells_on_surface
-from cellcolor.painting.refined import Refined, interpolated, unrefined
+from cellcolor.painting.refined import (
+    Refined,
+    choose_gates,
+    interpolated,
+    steps_by_edge,
+    subcells_on_surface,
+    unrefined,
+)
 from cellcolor.painting.trees import TooNarrow, Trees
 from cellcolor.union_find import UnionFind
 

@@ -17,8 +17,7 @@ from cellcolor.frontend.contact.obstacle import Obstacle
 from cellcolor.frontend.contact.tip import HalfSpace
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.pictures.mesh_picture import eye
-from cellcolor.pictures.palette import FAINT
-from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines, Text
+from cellcolor.pictures.picture import FAINT, Layer, Picture3D, SpaceLines, Text
 
 BESIDE = (28, 40)
 """The heights to look from, degrees, so that arm and part are seen side by side."""
@@ -124,7 +123,7 @@ def body_mesh(body: Body) -> _Mesh:
 
 def _placed(body: Body, poses: Poses) -> _Mesh:
     points, triangles = body_mesh(body)
-    turned = points @ poses.body_rotation[0, body.joint].T + poses.body_origin[0, body.joint]
+    turned = points @ poses.rotation[0, body.joint].T + poses.origin[0, body.joint]
     return turned, triangles
 
 

@@ -25,16 +25,17 @@ from cellcolor.decomposition import Decomposition
 from cellcolor.errors import InputError
 from cellcolor.painting.paint import Painted, paint
 from cellcolor.pictures.mesh_picture import SurfaceView, draw_surface
-from cellcolor.pictures.palette import (
+from cellcolor.pictures.picture import (
     FAINT,
     GREY,
     PAINTS,
     REASONS,
     WARNING,
+    Picture3D,
+    VertexClass,
     mixed,
     paints_of,
 )
-from cellcolor.pictures.picture import Picture3D, VertexClass
 
 CUT, OTHERS = "#666666", "#F3F1EA"
 _MOST_MARKED = 8  # vertices of a plan that is not valid

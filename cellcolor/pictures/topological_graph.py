@@ -15,8 +15,7 @@ from cellcolor.arrays import Array
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell
 from cellcolor.data.instance import Instance
 from cellcolor.data.wording import count
-from cellcolor.pictures.palette import INK, PAINTS
-from cellcolor.pictures.picture import Outline, Picture2D, PlaneLine
+from cellcolor.pictures.picture import INK, PAINTS, Outline, Picture2D, PlaneLine
 
 _DEAD = "dead edge"
 _POINTS_WIDE = 480.0

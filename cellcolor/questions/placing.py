@@ -4,32 +4,101 @@ A part is read once and moved (:meth:`~cellcolor.frontend.prepared.PreparedScene
 placements are tried on a coarse mesh, in batches that any process can do; the best ones are
 then built and proved on the scene's own mesh. Points are Sobol's, which fill the ranges evenly:
 some in the whole of them, then some in smaller and smaller boxes around the best ones.
+
+Where a placement cannot be among the best, bounds replace a whole build, which tests the arm
+between the vertices and takes a hundred times as long as at them. Each test only ever takes
+candidates and links away. So the area where a candidate is valid at the vertices is the most that
+can be covered. A segment is painted in one branch, on vertices that are joined by links without a
+jump: as many of these regions as cover enough are needed at least.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from math import ceil
 
 import numpy as np
+from scipy.optimize import Bounds, LinearConstraint, milp
+from scipy.sparse import csr_array, hstack, identity
 from scipy.spatial.transform import Rotation
 from scipy.stats import norm, qmc
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
-from cellcolor.frontend.build import build_prepared
+from cellcolor.frontend.build import StageClock, build_prepared, judged_at_vertices
 from cellcolor.frontend.contact.engine import meet
+from cellcolor.frontend.links import continuous_along
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 from cellcolor.frontend.parts.remeshing import fold_angle, folds, length_for, remeshed
 from cellcolor.frontend.prepared import PreparedScene, prepare
+from cellcolor.frontend.reach.continuity import regions
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.questions.bounding_places import bounds_of
-from cellcolor.questions.placements import VARIABLES, PlacedMinimum, Pose, Ranges
+from cellcolor.questions.placements import SAME_SHARE, VARIABLES, PlacedMinimum, Pose, Ranges
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
+
+_SLACK = 1e-6  # of a bound in floating point
+_LONGEST = 10.0  # s for one bound; the best one known by then is a bound as well
+
+
+def bounds_of(prepared: PreparedScene, cover: float, deadline: Deadline) -> tuple[float, int]:
+    """The share that is covered at most, and the segments that are needed at least to cover enough.
+
+    Args:
+        cover: the share of the surface that is enough. Where less can be covered, no links are
+            computed, and the second number is 1.
+
+    Raises:
+        OutOfTime: the deadline came first.
+    """
+    verdicts = judged_at_vertices(prepared, StageClock(deadline, None))
+    areas = prepared.surface.mesh.vertex_areas
+    valid, edges = verdicts.valid, prepared.surface.mesh.edges
+    # Added up as a whole build adds: what is the same must not differ by rounding.
+    most = float(areas[valid.any(axis=1)].sum() / areas.sum())
+    if most < cover - SAME_SHARE or not most:
+        return most, 1
+    region = regions(valid, edges, continuous_along(prepared, edges, verdicts, deadline))
+    # Slivers are given up, and what a tolerance refuses is not covered either: nobody knows yet
+    # which. Without both all that is valid has to be covered.
+    whole = prepared.setup.slivers is None and prepared.scene.tolerance is None
+    return most, _fewest(region, valid, areas / areas.sum(), most if whole else cover, deadline)
+
+
+def _fewest(region: Index, valid: Mask, weights: Array, cover: float, deadline: Deadline) -> int:
+    """How many regions cover a share at least.
+
+    Args:
+        region: (n, branches) the number of each candidate's region.
+        valid: (n, branches) the candidates that count.
+        weights: (n,) of the vertices, of sum 1.
+    """
+    vertices, branches = np.nonzero(valid)
+    names, column = np.unique(region[vertices, branches], return_inverse=True)
+    member = np.zeros((len(weights), len(names)), dtype=bool)
+    member[vertices, column] = True
+    places, own = np.unique(member, axis=0, return_inverse=True)
+    area = np.bincount(own.ravel(), weights)
+    # A place counts as far as regions that have it are chosen.
+    chosen = hstack([csr_array(places, dtype=float), -identity(len(places))])
+    enough = np.concatenate([np.zeros(len(names)), area])
+    price = np.concatenate([np.ones(len(names)), np.zeros(len(places))])
+    found = milp(
+        price,
+        integrality=price,
+        bounds=Bounds(0, 1),
+        constraints=[
+            LinearConstraint(chosen, 0, np.inf),
+            LinearConstraint(enough, cover - SAME_SHARE, np.inf),
+        ],
+        options={"time_limit": min(deadline.left, _LONGEST)},
+    )
+    bound = found.mip_dual_bound
+    return 1 if bound is None or not np.isfinite(bound) else max(1, ceil(bound - _SLACK))
+
 
 _FITTED = 4  # times that a displacement is scaled; a turn moves points along arcs
 _NOTHING = "the arm reaches nothing of it"
@@ -139,7 +208,7 @@ def coarse_scene(scene: Scene, vertices: int, deadline: Deadline) -> Scene:
         return scene.varied(object={"target_vertices": vertices}, collision_object=solid)
     angle = fold_angle(surface.mesh)
     own = len(folds(surface.vertices, surface.faces, angle))
-    area, wanted = float(surface.vertex_areas().sum()), vertices
+    area, wanted = float(surface.mesh.vertex_areas.sum()), vertices
     while wanted * _FINE_ENOUGH < len(surface.vertices):
         length = length_for(area, wanted)
         wanted = math.ceil(wanted * _FINE_ENOUGH)

@@ -4,7 +4,7 @@ First come placements all over the ranges, then some in smaller and smaller boxe
 ones. Those that are best then are built and proved on the scene's own mesh.
 
 A placement is built whole only where its bounds
-(:mod:`cellcolor.questions.bounding_places`) leave it a chance to be among the best: which these are
+(:mod:`cellcolor.questions.placing`) leave it a chance to be among the best: which these are
 is the same as if all were built.
 """
 

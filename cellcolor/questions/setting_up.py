@@ -12,11 +12,10 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
-from cellcolor.frontend.build import build_prepared
+from cellcolor.frontend.build import StageClock, build_prepared
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.questions.choosing_set_ups import Choice, choose
 from cellcolor.questions.placements import Pose
 from cellcolor.questions.placing import pose_of, stands_in

@@ -7,11 +7,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from cellcolor.checker.certificates import verify_bound
-from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.dart_lists import MOST_DARTS
 from cellcolor.checker.division import Report, check_scheme, check_solution
-from cellcolor.data.bound_kinds import CertifiedCells, kind_of
-from cellcolor.data.bounds import Bound, greatest
+from cellcolor.checker.groups import regions_of_cells
+from cellcolor.data.bounds import Bound, CertifiedCells, greatest, kind_of
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import (
     Division,
@@ -42,12 +41,13 @@ def check_able(name: str, options: Options, *, schemes: bool = False) -> None:
         InputError: there is no such solver, or it is not able to.
     """
     able = make_solver(name).abilities
-    for field, asked, can in (
-        ("start", options.start is not None, able.start),
-        ("schemes", schemes, able.optimal_schemes),
-    ):
-        if asked and not can:
-            raise InputError(None, field, f"is more than the solver {name} can do")
+    if options.start is not None and not able.start:
+        raise InputError(None, "start", f"is more than the solver {name} can do")
+    if schemes and not able.optimal_schemes:
+        raise InputError(None, "schemes", f"is more than the solver {name} can do")
+    if schemes and options.search_space != "paper":
+        message = "schemes are defined in search space 'paper' only"
+        raise InputError(None, "search_space", message)
     if options.search_space not in able.search_spaces:
         spaces = " and ".join(able.search_spaces)
         message = f"is {options.search_space}, the solver {name} searches {spaces}"
@@ -65,12 +65,8 @@ def check_able_to_list(name: str, instance: Instance) -> None:
         return
     for cell, loops in enumerate(instance.live_loops):
         if len(loops) > 1:
-            raise InputError(
-                None,
-                f"cells[{cell}].loops",
-                f"the solver {name} lists optimal schemes with one live loop only, "
-                f"this one has {len(loops)}",
-            )
+            only = f"the solver {name} lists optimal schemes with one live loop only"
+            raise InputError(None, f"cells[{cell}].loops", f"{only}, this one has {len(loops)}")
 
 
 def solve(
@@ -91,12 +87,8 @@ def solve(
     chosen = make_solver(solver)
     live = len(instance.live_edges)
     if 2 * live * options.strands > MOST_DARTS:
-        raise InputError(
-            None,
-            "strands",
-            f"{options.strands} for each of {live} live edges are too many; "
-            f"they may have {MOST_DARTS} darts together",
-        )
+        many = f"{options.strands} for each of {live} live edges are too many"
+        raise InputError(None, "strands", f"{many}; they may have {MOST_DARTS} darts together")
     start = time.monotonic()
     if chosen.abilities.several_loops:
         answer = chosen.minimize(instance, options, progress)
@@ -125,31 +117,11 @@ def checked_solution(
 ) -> Solution:
     """What follows from an answer, after the checker has seen it.
 
+    Its segments are counted, and its status is what it has proved.
+
     Raises:
         RefusedResult: the checker refuses what the solver found.
     """
-    return passed(instance, solution_of(instance, options, solver, answer, seconds))
-
-
-def passed(instance: Instance, solution: Solution) -> Solution:
-    """A solution after the checker has seen it; its certificates have been verified before.
-
-    Raises:
-        RefusedResult: the checker refuses it.
-    """
-    bare = tuple(replace(bound, certificate=None) for bound in solution.bounds or ())
-    _insist(check_solution(instance, replace(solution, bounds=bare)), solution.solver)
-    return solution
-
-
-def solution_of(
-    instance: Instance,
-    options: Options,
-    solver: str,
-    answer: Answer,
-    seconds: float,
-) -> Solution:
-    """What follows from an answer: its segments are counted, its status is what it has proved."""
     bounds = tuple(_certified(instance, b, options.deadline) for b in _needed(answer.bounds))
     surface_bound, lower_bound = greatest(bounds, "surface"), greatest(bounds, "strands")
     segments = None if answer.division is None else count_segments(answer.division)
@@ -158,7 +130,7 @@ def solution_of(
         status = "unknown"
     elif segments == (lower_bound if options.search_space == "paper" else surface_bound):
         status = "optimal"
-    return Solution(
+    solution = Solution(
         instance=InstanceReference(instance.name, instance.sha256),
         search_space=options.search_space,
         strands=options.strands,
@@ -177,6 +149,18 @@ def solution_of(
         notes=answer.notes,
         model=answer.model,
     )
+    return passed(instance, solution)
+
+
+def passed(instance: Instance, solution: Solution) -> Solution:
+    """A solution after the checker has seen it; its certificates have been verified before.
+
+    Raises:
+        RefusedResult: the checker refuses it.
+    """
+    bare = tuple(replace(bound, certificate=None) for bound in solution.bounds or ())
+    _insist(check_solution(instance, replace(solution, bounds=bare)), solution.solver)
+    return solution
 
 
 def enumerate_schemes(
@@ -196,7 +180,7 @@ def enumerate_schemes(
 
     Raises:
         InputError: there is no such solver, or it lists no schemes, or none of this instance.
-        TooLarge: the model would not fit into memory.
+        TooLarge: the search would not fit into memory.
         RefusedResult: the checker refuses what the solver found.
     """
     check_able(solver, options, schemes=True)
@@ -207,10 +191,9 @@ def enumerate_schemes(
         raise InputError(None, "solver", message)
     if known is not None and chosen.abilities.start:
         options = replace(options, start=known)
-    found = False
+    division: Division | None = None
     schemes = chosen.optimal_schemes(instance, options, segments)
     for division in schemes:
-        found = True
         if counted is not None and (count := getattr(schemes, "count", None)) is not None:
             counted(count)
             counted = None
@@ -220,7 +203,7 @@ def enumerate_schemes(
             reasons = "; ".join(report.not_canonical) or f"{report.segments} segments"
             raise RefusedResult(f"{solver} returned no optimal scheme: {reasons}")
         yield division
-    if not found:
+    if division is None:
         raise RefusedResult(f"{solver} found no scheme with {segments} segments, the minimum")
 
 

@@ -18,7 +18,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import ModelSize
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import SolverMissing, TooLarge
-from cellcolor.files.paths import shipped_folder
+from cellcolor.files.writing import shipped_folder
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains, only_loops
 

@@ -47,10 +47,9 @@ class Options:
 
     Attributes:
         search_space: ``paper``, or ``surface`` for any division of the physical surface.
-        strands: strands per topological edge, at least 1. If it is left out it is the number that
-            ``STRANDS`` has for the search space.
+        strands: per topological edge; if left out, as ``STRANDS`` has it for the search space.
         deadline: when everything has to end.
-        workers: CP-SAT's search workers, at most 1000, None for ``PORTFOLIO``.
+        workers: CP-SAT's search workers, None for ``PORTFOLIO``.
         seed: for everything that is random.
         start: a division to start from, for solvers that can do this.
 

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from math import isfinite
 from threading import Event, Thread
 
 from ortools.sat.python import cp_model
 
-from cellcolor.deadline import Deadline
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import CellcolorError
-from cellcolor.solvers.interface import PORTFOLIO
+from cellcolor.solvers.interface import PORTFOLIO, Options
 
 FEW_WORKERS = 2
-"""Up to how many workers search in strategies that we name, in turns. With more of them OR-Tools
+"""Up to how many workers search in our ``STRATEGIES``, in turns. With more of them OR-Tools
 chooses; one or two would have its default strategy alone, which hardly ever proves a bound around
 hubs."""
+
+STRATEGIES = "no_lp", "default_lp", "core"
+"""Without a linear relaxation divisions are found, with it bounds; the last one raises the bound by
+cores, sets of literals of which some must cost a segment."""
+
+Solve = Callable[[cp_model.CpModel], tuple[cp_model.CpSolver, cp_model.CpSolverStatus]]
+"""Solves a model within limits that it knows; hands back the solver and its status."""
 
 
 def make_cp_solver(
@@ -36,26 +43,6 @@ def make_cp_solver(
         solver.parameters.max_time_in_seconds = deadline.left
     if effort is not None:
         solver.parameters.max_deterministic_time = effort
-    return solver
-
-
-def make_portfolio(
-    deadline: Deadline,
-    workers: int | None,
-    seed: int,
-    strategies: Sequence[str],
-    effort: float | None = None,
-) -> cp_model.CpSolver:
-    """A CP-SAT solver for a model that is worth several strategies, whatever the workers.
-
-    Args:
-        workers: its search workers, None for ``PORTFOLIO``.
-        strategies: OR-Tools' names of those for ``FEW_WORKERS`` or fewer.
-    """
-    solver = make_cp_solver(deadline, workers or PORTFOLIO, seed, effort)
-    if solver.parameters.num_workers <= FEW_WORKERS:
-        solver.parameters.interleave_search = True
-        solver.parameters.subsolvers.extend(strategies)
     return solver
 
 
@@ -108,3 +95,51 @@ class _Watcher(cp_model.CpSolverSolutionCallback):
 
     def on_solution_callback(self) -> None:
         self._found(round(self.objective_value))
+
+
+class Runner:
+    """Solves models one after the other, with the options' deadline, workers and seed."""
+
+    def __init__(self, options: Options) -> None:
+        self._options = options
+        self._stopped = False
+
+    @property
+    def over(self) -> bool:
+        """Whether there is no time left, or Ctrl-C came."""
+        return self._stopped or self._options.deadline.over
+
+    def portfolio(self, deadline: Deadline | None = None) -> cp_model.CpSolver:
+        """A solver with the options' workers, ``PORTFOLIO`` if they name none.
+
+        Args:
+            deadline: of this model, if it is not that of the options.
+        """
+        workers = self._options.workers or PORTFOLIO
+        solver = make_cp_solver(deadline or self._options.deadline, workers, self._options.seed)
+        if workers <= FEW_WORKERS:
+            solver.parameters.interleave_search = True
+            solver.parameters.subsolvers.extend(STRATEGIES)
+        return solver
+
+    def single(self, effort: float, deadline: Deadline) -> cp_model.CpSolver:
+        """A solver with one worker, for models that are too small for a portfolio.
+
+        Args:
+            effort: deterministic seconds.
+        """
+        return make_cp_solver(deadline, 1, self._options.seed, effort)
+
+    def solve(
+        self,
+        solver: cp_model.CpSolver,
+        model: cp_model.CpModel,
+        found: Callable[[int], None] | None = None,
+    ) -> cp_model.CpSolverStatus:
+        """Solve a model; after an interrupt that ends the search there is no time left."""
+        status, interrupt = solve_interruptibly(solver, model, found)
+        if interrupt is not None:
+            self._stopped = True
+            if not isinstance(interrupt, OutOfTime):
+                raise interrupt
+        return status

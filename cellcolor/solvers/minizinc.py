@@ -23,7 +23,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, count_segments
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import CellcolorError, SolverMissing, TooLarge
-from cellcolor.files.paths import shipped_folder
+from cellcolor.files.writing import shipped_folder
 from cellcolor.processes import Child
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains, only_loops

@@ -17,9 +17,9 @@ from cellcolor.deadline import OutOfTime
 from cellcolor.errors import TooLarge
 from cellcolor.solvers.checked import passed
 from cellcolor.solvers.cpsat.complete_model import CompleteModel
-from cellcolor.solvers.cpsat.runner import Runner
+from cellcolor.solvers.cpsat.painting import joined
 from cellcolor.solvers.interface import Options, Start
-from cellcolor.solvers.joining import joined
+from cellcolor.solvers.interruptible import Runner
 
 _GRAIN = 1e-6  # the model counts costs in whole multiples of it
 _TIME = "the time ended first"
@@ -111,7 +111,7 @@ def _by_model(
     built.model.add(built.segments <= solution.segments)
     built.model.minimize(_cost(built, costs))
     runner = Runner(options)
-    solver = runner.portfolio(options.deadline)
+    solver = runner.portfolio()
     status = runner.solve(solver, built.model)
     if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         return solution, _TIME

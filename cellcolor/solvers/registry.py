@@ -55,8 +55,8 @@ def make_solver(name: str) -> Solver:
     """The solver of that name.
 
     Raises:
-        InputError: there is none, two packages register different ones, or the one that is
-            registered cannot be imported or is no solver.
+        InputError: there is none, two packages register different ones, or it cannot be imported
+            or is no solver.
         SolverMissing: what it needs is not installed.
     """
     from cellcolor.solvers.interface import Abilities

@@ -11,10 +11,15 @@ from cellcolor.arrays import Array, Index, unit
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
 from cellcolor.tool_paths.contour import EVENED, FINEST
-from cellcolor.tool_paths.distances import evened, off_border, ways_from, with_room_inside
-from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.level_lines import LevelLine, level_lines, slice_along
-from cellcolor.tool_paths.triangles import Triangles
+from cellcolor.tool_paths.registry import Laid
+from cellcolor.tool_paths.triangles import (
+    Triangles,
+    evened,
+    off_border,
+    ways_from,
+    with_room_inside,
+)
 
 _SPUR = 2.0  # spacings of rows that are missing, for each turn of spurs
 _WEAVES = 0.6  # of the inset

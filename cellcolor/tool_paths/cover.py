@@ -14,12 +14,10 @@ from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.wording import in_meters, looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.tool_paths.interface import Laid, Pattern
 from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
-from cellcolor.tool_paths.overlap import Overlap, clipped, owned
 from cellcolor.tool_paths.refused import Refusals, RefusedPlace, without_refused
-from cellcolor.tool_paths.region import Region, Segments, regions_of
-from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
+from cellcolor.tool_paths.region import Overlap, Region, Segments, clipped, owned, regions_of
+from cellcolor.tool_paths.registry import DEFAULT_PATTERN, Laid, Pattern, find_pattern
 from cellcolor.tool_paths.rounding import Line, rounded
 from cellcolor.tool_paths.spurs import with_spurs
 from cellcolor.tool_paths.triangles import Triangles

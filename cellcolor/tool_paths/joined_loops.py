@@ -17,8 +17,7 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index
 from cellcolor.deadline import Deadline
-from cellcolor.tool_paths.distances import Ways, off_border, ways_from
-from cellcolor.tool_paths.triangles import Triangles
+from cellcolor.tool_paths.triangles import Triangles, Ways, off_border, ways_from
 from cellcolor.union_find import UnionFind
 
 _MOST_CANDIDATES = 250  # bridges looked at for one door

@@ -16,7 +16,7 @@ from scipy.ndimage import gaussian_filter1d
 from cellcolor.arrays import Array, Index, Mask, to_nearest
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import Deadline
-from cellcolor.tool_paths.interface import Laid
+from cellcolor.tool_paths.registry import Laid
 from cellcolor.tool_paths.triangles import Triangles
 
 _BELL = 0.3  # spacings; deviation of the bell curve. It cuts a corner of 90 degrees by half of that

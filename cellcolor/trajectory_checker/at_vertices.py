@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
-from cellcolor.data.joint_plan import ContactPath, VertexContacts
+from cellcolor.data.plan import ContactPath, VertexContacts
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.inverse import is_tool_on_last_axis, pose_at_zero

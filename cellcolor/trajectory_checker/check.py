@@ -15,18 +15,18 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.trajectory_checker.area import judge_area
-from cellcolor.trajectory_checker.contact import contact_of
-from cellcolor.trajectory_checker.dense import densified, poses_of
-from cellcolor.trajectory_checker.fault_list import FaultList
-from cellcolor.trajectory_checker.feed import judge_feed, judge_transfers
-from cellcolor.trajectory_checker.fine_mesh import refined
-from cellcolor.trajectory_checker.joint_motion import JointLimits, judge_joints
-from cellcolor.trajectory_checker.on_surface import (
+from cellcolor.trajectory_checker.contact import (
+    contact_of,
     judge_contact,
     judge_cracks,
     judge_dragged,
     judge_turn,
 )
+from cellcolor.trajectory_checker.dense import densified, poses_of
+from cellcolor.trajectory_checker.fault_list import FaultList
+from cellcolor.trajectory_checker.feed import judge_feed, judge_transfers
+from cellcolor.trajectory_checker.fine_mesh import refined
+from cellcolor.trajectory_checker.joint_motion import JointLimits, judge_joints
 from cellcolor.trajectory_checker.stated import judge_lift_offs, judge_poses
 from cellcolor.trajectory_checker.tolerances import OFF_SURFACE, Limits
 from cellcolor.trajectory_checker.validity import judge_validity

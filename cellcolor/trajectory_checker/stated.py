@@ -1,15 +1,20 @@
-"""What a trajectory states of itself: points and normals, lift-offs, places that it leaves out."""
+"""What a trajectory states of itself: points and normals, lift-offs, places that it leaves out.
+
+What a table of another planner leaves out is added from the scene's arm.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.arrays import Array, Mask
-from cellcolor.data.trajectory import Trajectory
+from cellcolor.arrays import Array, Mask, stretches
+from cellcolor.data.trajectory import ExtraLiftOff, RepeatedStretch, Trajectory, TrajectoryTable
 from cellcolor.data.wording import count
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import InputError
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.trajectory_checker.covered import Reached
-from cellcolor.trajectory_checker.dense import angles
+from cellcolor.trajectory_checker.dense import angles, poses_of, strokes_of
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import POSE_ANGLE, POSE_DISTANCE
 
@@ -111,3 +116,45 @@ def judge_left_out(
         elif wrong[at] and not fails:
             text = f"segment {part.segment}: announced as left out ({part.reason}), but reachable"
             faults.add("claim", text, place=place)
+
+
+_REASON = "stated in the table"
+
+
+def completed(table: TrajectoryTable, robot: Robot, deadline: Deadline = NEVER) -> Trajectory:
+    """A table as a trajectory of an arm.
+
+    Points and normals that it does not have are those that its joints give, times the numbers of
+    the samples, and segments those of the strokes.
+
+    Raises:
+        InputError: it has another number of joints.
+    """
+    joints, count = table.joints, len(table.joints)
+    if joints.shape[1] != robot.joints:
+        message = f"there are {joints.shape[1]} joints, the arm has {robot.joints}"
+        raise InputError(None, "line 1", message)
+    if table.poses is None:
+        points, axes = poses_of(robot, joints, deadline)
+        normals = -axes
+    else:
+        points, normals = table.poses[:, :3], table.poses[:, 3:]
+    segment = strokes_of(table.contact) if table.segment is None else table.segment
+    return Trajectory(
+        name=table.name,
+        joint_names=robot.joint_names,
+        times=np.arange(count, dtype=np.float64) if table.times is None else table.times,
+        joints=joints,
+        points=points,
+        normals=normals,
+        contact=table.contact,
+        segment=segment,
+        unplanned=tuple(np.flatnonzero(table.unplanned).tolist()),
+        extra_lift_offs=tuple(
+            ExtraLiftOff(k, int(segment[k]), _REASON, _REASON, tuple(points[k].tolist()))
+            for k in np.flatnonzero(table.extra_lift_off).tolist()
+        ),
+        repeated=tuple(
+            RepeatedStretch(first, after - 1, _REASON) for first, after in stretches(table.repeated)
+        ),
+    )

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from cellcolor.data.cells_and_edges import Cell
-from cellcolor.pictures.palette import INK, WARNING
+from cellcolor.pictures.picture import INK, WARNING
 from examples import (
     BLUE,
     RED,

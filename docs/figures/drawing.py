@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from cellcolor.data.solution import Solution
 from cellcolor.pictures.mesh_picture import mesh_picture_parts
-from cellcolor.pictures.palette import FAINT, INK
+from cellcolor.pictures.picture import FAINT, INK
 from examples import BLUE, GREEN, RED, YELLOW, Array, Example
 
 FILL = {RED: "#e4707c", BLUE: "#6a9bd1", GREEN: "#83b97c", YELLOW: "#e8cf6b"}

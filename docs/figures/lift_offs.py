@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 import cellcolor
 from cellcolor.arrays import Array, Index
 from cellcolor.frontend import build_surface
-from cellcolor.pictures.palette import FAINT, INK, LINES, PAINTS, WARNING
+from cellcolor.pictures.picture import FAINT, INK, LINES, PAINTS, WARNING
 
 TOP = Path(__file__).resolve().parents[2]
 sys.path.append(str(TOP / "benchmarks"))

@@ -17,10 +17,10 @@ from matplotlib.patches import Circle, Rectangle, Wedge
 
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
-from cellcolor.pictures.palette import INK
+from cellcolor.pictures.picture import INK
 from cellcolor.solvers.cpsat.complete_model import CompleteModel
-from cellcolor.solvers.cpsat.drawing import sector_colors
 from cellcolor.solvers.cpsat.painting import Block
+from cellcolor.solvers.cpsat.sectors import sector_colors
 from examples import BLUE, GREEN, RED, YELLOW, Array
 
 COLORS = RED, BLUE, GREEN, YELLOW, RED

@@ -15,8 +15,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests" / "support"))
 from motions import planned_scene, ring_scene
 
-from cellcolor.motion.following import follow
-from cellcolor.motion.samples import sampled
+from cellcolor.motion.following import follow, sampled
 from cellcolor.tool_paths.cover import cover
 from cellcolor.tool_paths.region import Segments
 

@@ -36,7 +36,7 @@ from cellcolor.solvers.interface import Options
 NUMBERS = ("segments", "lift_offs", "lower_bound", "surface_lower_bound")
 
 
-FIGURES = ("annulus", "parallel-corridors", "ring", "split-cell", "three-loops")
+FIGURES = ("annulus", "parallel-corridors", "ring", "split-cell")
 
 
 @cache
@@ -151,6 +151,15 @@ def test_the_order_of_sub_cells_means_nothing(case: tuple[Instance, Solution], r
 RED, BLUE = 0, 1
 
 
+UNKNOWN: dict[str, object] = {
+    "status": "unknown",
+    "segments": None,
+    "lift_offs": None,
+    "cells": None,
+    "proved_for_surface": False,
+}
+
+
 @pytest.mark.parametrize(
     ("change", "expected"),
     [
@@ -167,25 +176,6 @@ RED, BLUE = 0, 1
             {"search_space": "surface", "surface_lower_bound": 1, "proved_for_surface": False},
             "status: a division with 2 segments is not proved optimal by a lower bound of 1",
         ),
-    ],
-)
-def test_numbers_are_checked(change: dict[str, object], expected: str) -> None:
-    report = check_solution(SPLIT, replace(split_solution(), **change))  # type: ignore[arg-type]
-    assert any(problem.startswith(expected) for problem in report.problems), report.problems
-
-
-UNKNOWN: dict[str, object] = {
-    "status": "unknown",
-    "segments": None,
-    "lift_offs": None,
-    "cells": None,
-    "proved_for_surface": False,
-}
-
-
-@pytest.mark.parametrize(
-    ("change", "expected"),
-    [
         ({"lower_bound": 1, "status": "feasible"}, "lower_bound: 1 cannot be below"),
         ({"bounds": ()}, "lower_bound: says 2, the greatest of bounds is 0"),
         (
@@ -216,7 +206,7 @@ UNKNOWN: dict[str, object] = {
         (UNKNOWN | {"seams": (Seam(99, 0, 1, 3, 1),)}, "seams: there are none"),
     ],
 )
-def test_contradictions_are_refused(change: dict[str, object], expected: str) -> None:
+def test_false_numbers_are_named(change: dict[str, object], expected: str) -> None:
     report = check_solution(SPLIT, replace(split_solution(), **change))  # type: ignore[arg-type]
     assert any(problem.startswith(expected) for problem in report.problems), report.problems
 

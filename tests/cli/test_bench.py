@@ -17,7 +17,6 @@ from commands import run
 from guides import install
 from library import PAPER
 
-from cellcolor import library
 from cellcolor.lab.runs.row import Row
 from cellcolor.lab.runs.table import read_table
 from cellcolor.lab.workers import Task
@@ -105,16 +104,6 @@ class TestRun:
             assert min(row.process_seconds, row.cpu_seconds, row.peak_mb) > 0
         assert found[1].solver_version.startswith("OR-Tools ") and found[1].workers == 1
 
-    @pytest.mark.slow
-    def test_the_library(self, tmp_path: Path) -> None:
-        table = tmp_path / "t.csv"
-        assert run("bench", "run", "library/paper", "--solver", "dfs", "-o", table) == 0
-        entries = [entry for entry in library().index.entries if entry.family == "paper"]
-        assert [row.instance for row in rows(table)] == [entry.name for entry in entries]
-        for row, entry in zip(rows(table), entries, strict=True):
-            assert (row.family, row.sha256) == ("library/paper", entry.fingerprint)
-            assert entry.paper.upper is not None and row.segments == entry.paper.upper.value
-
     def test_families_take_turns_and_a_table_is_continued(
         self, tmp_path: Path, capsys: Capture
     ) -> None:
@@ -180,13 +169,6 @@ class TestRun:
         assert (deaf.status, deaf.seconds, deaf.segments) == ("timeout", None, None)
         assert deaf.error is not None and deaf.error.startswith("killed after")
         assert dfs.status == "optimal"
-
-    @pytest.mark.skipif(sys.platform != "linux", reason="memory is looked at on Linux only")
-    def test_memory(self, tmp_path: Path) -> None:
-        table = tmp_path / "t.csv"
-        arguments = ("--solver", "dfs", "--memory", "12", "-o", table)
-        assert run("bench", "run", RING, *arguments) == 0
-        assert [row.status for row in rows(table)] == ["memory"]
 
     @pytest.mark.usefixtures("fakes")
     @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])

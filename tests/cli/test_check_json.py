@@ -82,15 +82,6 @@ def test_the_object_says_what_the_verdict_says(
         assert said.segments is not None and better.segments < said.segments
 
 
-def test_a_surface_from_standard_input(pipe: Pipe, tmp_path: Path, capsys: Capture) -> None:
-    plan = tmp_path / "plan.json"
-    plan.write_text(text(BEST), encoding="utf-8")
-    pipe(ROW.to_json())
-    assert run("check", "-", plan, "--json") == 0
-    verdict = PlanVerdict.from_document(printed(capsys))
-    assert (verdict.file, verdict.optimal) == (str(plan), True)
-
-
 def test_a_solution_with_its_schemes_from_standard_input(
     pipe: Pipe, tmp_path: Path, capsys: Capture
 ) -> None:
@@ -107,15 +98,6 @@ def test_a_solution_with_its_schemes_from_standard_input(
     pipe(RING.read_bytes())
     assert run("check", "-", schemes, "--json") == 0
     assert SolutionVerdict.from_document(printed(capsys)) == from_file
-
-
-def test_a_file_of_that_name(
-    row: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
-) -> None:
-    (tmp_path / "-").write_text(text(BEST), encoding="utf-8")
-    monkeypatch.chdir(tmp_path)
-    assert run("check", row, "./-", "--json") == 0
-    assert printed(capsys)["file"] == "./-"
 
 
 def test_a_plan_that_is_not_valid(row: Path, pipe: Pipe, capsys: Capture) -> None:

@@ -45,19 +45,16 @@ def stated(trajectory: Trajectory) -> Trajectory:
     return replace(trajectory, extra_lift_offs=(extra,))
 
 
-def table(path: Path, trajectory: Trajectory, *, timed: bool = True) -> Path:
+def table(path: Path, trajectory: Trajectory) -> Path:
     """Joints, contact and the extra lift-off alone, with six decimals."""
     extra = {stated.sample for stated in trajectory.extra_lift_offs}
     with path.open("w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream)
         joints = [f"q{k + 1}" for k in range(trajectory.joints.shape[1])]
-        writer.writerow([*(["time_s"] if timed else []), "contact", *joints, "extra_lift_off"])
-        for number, (time, contact, row) in enumerate(
-            zip(trajectory.times, trajectory.contact, trajectory.joints, strict=True)
-        ):
-            cells = [f"{value:.6f}" for value in ([time, *row] if timed else row)]
-            cells.insert(1 if timed else 0, str(int(contact)))
-            writer.writerow([*cells, int(number in extra)])
+        writer.writerow(["contact", *joints, "extra_lift_off"])
+        for number, row in enumerate(trajectory.joints):
+            cells = [f"{value:.6f}" for value in row]
+            writer.writerow([int(trajectory.contact[number]), *cells, int(number in extra)])
     return path
 
 
@@ -70,13 +67,12 @@ def test_a_valid_one(scene: Path, tmp_path: Path, capsys: Capture) -> None:
     assert printed.startswith(f"{path}: valid\n  2 strokes, 1 lift-off, ")
     assert "fewest lift-offs on this surface, proved: 0; 1 more announced, 0 more not" in printed
     assert "within 15 mm of a pass 100.00%" in printed
-    for timed in (True, False):
-        other = table(tmp_path / "t.csv", trajectory, timed=timed)
-        assert run("check", scene, other, "--json") == 0
-        document = json.loads(capsys.readouterr().out)
-        assert document.pop("file") == str(other)
-        verdict = TrajectoryVerdict.from_document(document)
-        assert (verdict.timed, verdict.lift_offs, verdict.minimum_lift_offs) == (timed, 1, 0)
+    other = table(tmp_path / "t.csv", trajectory)
+    assert run("check", scene, other, "--json") == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document.pop("file") == str(other)
+    verdict = TrajectoryVerdict.from_document(document)
+    assert (verdict.timed, verdict.lift_offs, verdict.minimum_lift_offs) == (False, 1, 0)
 
 
 def test_one_with_faults(scene: Path, tmp_path: Path, capsys: Capture) -> None:
@@ -93,14 +89,9 @@ def test_one_with_faults(scene: Path, tmp_path: Path, capsys: Capture) -> None:
     verdict = cellcolor.check(scene, path)
     assert isinstance(verdict, TrajectoryVerdict)
     assert [fault.sample for fault in verdict.of_kind("jump")] == [499]
-
-
-def test_from_python_as_values() -> None:
-    _, built, trajectory = rasters.square()
-    verdict = cellcolor.check(built, trajectory)
-    assert verdict.minimum_lift_offs == 0
-    assert set(verdict.fault_counts) == {"lift-offs"}
-    assert cellcolor.check(built, stated(trajectory)).valid
+    # As values, without the extra lift-off stated.
+    verdict = cellcolor.check(rasters.square()[1], trajectory)
+    assert (verdict.minimum_lift_offs, set(verdict.fault_counts)) == (0, {"lift-offs"})
 
 
 def test_bad_input(scene: Path, tmp_path: Path, capsys: Capture) -> None:

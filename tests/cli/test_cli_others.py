@@ -109,22 +109,6 @@ class TestCheck:
         assert run("check", ZEROS, solved) == 1
         assert "schemes: says 3, listed are 2" in capsys.readouterr().out
 
-    def test_scheme_that_is_not_optimal(self, solved: Path, capsys: Capture) -> None:
-        """A legal scheme with more segments than the solution has no place in its list."""
-        worse = {
-            "format": "cellcolor/scheme",
-            "cells": [
-                {"id": 0, "subcells": [{"color": 0, "darts": [1, 2, 3], "segment": 0}]},
-                {"id": 1, "subcells": [{"color": 0, "darts": [-2, -3], "segment": 0}]},
-                {"id": 2, "subcells": [{"color": 1, "darts": [], "segment": 1}]},
-                {"id": 3, "subcells": [{"color": 0, "darts": [-1], "segment": 0}]},
-                {"id": 4, "subcells": [{"color": 1, "darts": [], "segment": 2}]},
-            ],
-        }
-        self.change(solved, 3, lambda d: d.update(worse))
-        assert run("check", ZEROS, solved) == 1
-        assert "scheme 3: has 3 segments, the solution 2" in capsys.readouterr().out
-
     def test_reading_counts_for_a_plan(
         self, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
     ) -> None:
@@ -155,20 +139,6 @@ def test_a_plan_is_not_checked_against_a_graph_alone(tmp_path: Path, capsys: Cap
         f"cellcolor: {plan}: format: is a plan, which goes with a labelled surface; "
         f"{graph} names none\n"
     )
-
-
-def test_a_plan_is_checked_on_the_surface_that_an_instance_names(
-    tmp_path: Path, capsys: Capture
-) -> None:
-    graph, surface = (INSTANCES / "scenes" / f"wok{end}" for end in (".json", ".surface.json"))
-    colors = LabelledSurface.read(surface).vertex_colors
-    plan = tmp_path / "plan.json"
-    plan.write_text(Plan(tuple(min(own, default=None) for own in colors)).to_json())
-    verdicts = []
-    for subject in (graph, surface):
-        assert run("check", subject, plan) == 0
-        verdicts.append(capsys.readouterr().out)
-    assert verdicts[0] == verdicts[1]
 
 
 def test_an_instance_is_not_written_where_it_would_be_a_scene(

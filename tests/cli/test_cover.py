@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 from commands import run
 from library import PAPER
@@ -46,15 +45,6 @@ def test_the_paths_are_written_and_read(
         tool_radius_m=0.5,
     )
     assert values.paths == paths
-
-
-def test_a_painting_is_covered_with_its_own_normals() -> None:
-    painting = cellcolor.paint("ring.surface.json", cellcolor.solve("ring.surface.json"))
-    down = np.tile([0.0, 0.0, -2.0], (len(painting.surface.vertices), 1))
-    found = cellcolor.cover(painting, spacing_m=0.5, tool_radius_m=0.5, normals=down)
-    assert len(found.paths.paths) == painting.segments
-    assert all((path.normals == [0, 0, -1]).all() for path in found.paths.paths)
-    assert "% covered" in str(found)
 
 
 def test_wrong_input_is_refused(

@@ -92,12 +92,6 @@ def test_toml(text: str, message: str, tmp_path: Path, capsys: Capture) -> None:
     assert message in line_about(named, ["build", path, "-o", tmp_path / "y.json"], capsys)
 
 
-def test_a_comment_of_many_dots_is_no_key(tmp_path: Path, capsys: Capture) -> None:
-    path = tmp_path / "x.toml"
-    path.write_text("# " + "." * 500 + " " + ". " * 500 + "\nname = 1\n", encoding="utf-8")
-    assert "parts" not in line_about(path, ["solve", path], capsys)
-
-
 def stl(faces: int, announced: int) -> bytes:
     corners = (0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0)
     return bytes(80) + struct.pack("<I", announced) + struct.pack("<12fH", *corners, 0) * faces
@@ -227,11 +221,6 @@ class TestStandardOutput:
         assert (
             json.loads((tmp_path / "i.json").read_text("utf-8"))["format"] == "cellcolor/instance"
         )
-
-    def test_both_closed(self) -> None:
-        command = [sys.executable, "-m", "cellcolor", "solve", str(RING)]
-        done = subprocess.run(["sh", "-c", 'exec "$@" >&- 2>&-', "sh", *command])
-        assert done.returncode == 2
 
     def test_letters_that_an_encoding_does_not_have(self, tmp_path: Path) -> None:
         path = tmp_path / "x.json"

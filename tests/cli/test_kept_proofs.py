@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
 
 import pytest
 from commands import run
@@ -40,45 +39,6 @@ def test_a_cache_that_is_no_folder(row: Path, pipe: Pipe, capsys: Capture) -> No
     pipe(text(BEST))
     assert run("check", row, "-", "--cache", row) == 2
     assert capsys.readouterr().err == f"cellcolor: {row}: must be a folder\n"
-
-
-def kept_for_the_row(row: Path, pipe: Pipe, folder: Path, capsys: Capture) -> Path:
-    pipe(text(BEST))
-    assert run("check", row, "-", "--cache", folder) == 0
-    capsys.readouterr()
-    (kept,) = folder.iterdir()
-    return kept
-
-
-@pytest.mark.parametrize(
-    "tampered",
-    [
-        {"lower": 2, "upper": 2},
-        {"lower": 3, "upper": 3, "solutions": []},
-        {"solutions": [[]]},
-        {"seconds": "long"},
-    ],
-)
-def test_numbers_in_a_kept_file_are_not_believed(
-    row: Path, pipe: Pipe, tmp_path: Path, capsys: Capture, tampered: dict[str, Any]
-) -> None:
-    """The row can be painted in one color; somebody has written other things into the file."""
-    kept = kept_for_the_row(row, pipe, tmp_path / "c", capsys)
-    document = json.loads(kept.read_text(encoding="utf-8"))
-    kept.write_text(json.dumps(document | tampered), encoding="utf-8")
-    pipe(text(WORSE))
-    assert run("check", row, "-", "--cache", tmp_path / "c", "--json") == 0
-    verdict = PlanVerdict.from_document(printed(capsys))
-    assert (verdict.lower_bound, verdict.upper_bound, verdict.optimal) == (1, 1, False)
-
-
-@pytest.mark.parametrize("content", ["", "{", "[" * 100_000, '{"a":' * 2_000 + "1" + "}" * 2_000])
-def test_a_kept_file_that_cannot_be_read_is_proved_anew(
-    row: Path, pipe: Pipe, tmp_path: Path, capsys: Capture, content: str
-) -> None:
-    kept_for_the_row(row, pipe, tmp_path / "c", capsys).write_text(content)
-    pipe(text(BEST))
-    assert run("check", row, "-", "--cache", tmp_path / "c", "--require-optimal") == 0
 
 
 # Two arms in red and two in blue at a bar in both: two segments if the bar is divided, else three.

@@ -50,64 +50,42 @@ def test_a_file_of_joint_solutions_is_labelled(
 
 
 @pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"offsets": np.array([0, 2, 4])}, "offsets: has 3 entries, 3 vertices need 4"),
-        ({"offsets": np.array([0, 2, 4, 4])}, "offsets: must rise from 0 to 5"),
-        ({"offsets": np.array([0, 4, 2, 5])}, "offsets[2]: must rise from 0 to 5"),
-        ({"offsets": np.array([0.0, 2.0, 4.0, 5.0])}, "offsets: must be whole numbers"),
-        ({"names": np.array(["up"])}, "names: has 1 entries for 5 configurations"),
-        ({"joints": np.array([1])}, "joints: is unknown"),
-        ({"vertices": np.array(1.0)}, "vertices: has 0 dimensions, must have 2"),
-        ({"configurations": np.full((5, 2), np.nan)}, "configurations[0][0][0]: is not a finite"),
-    ],
-)
-def test_a_wrong_archive_is_refused_in_one_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], changes: dict[str, Any], message: str
-) -> None:
-    source, output = tmp_path / "own.npz", tmp_path / "s.json"
-    np.savez(source, **(ARCHIVE | changes))
-    assert main(["label", str(source), "-o", str(output)]) == 2
-    refused = capsys.readouterr().err.splitlines()
-    assert len(refused) == 1
-    assert f"{source}: {message}" in refused[0]
-    assert not output.exists()
-
-
-@pytest.mark.parametrize(
     ("name", "content", "message"),
     [
-        ("own.npz", "no archive", "is no archive of arrays"),
-        ("own.json", '{"vertices": [], "faces": []}', "configurations: is missing"),
-        ("own.json", '{"vertices": 1, "faces": [], "configurations": []}', "vertices: must be"),
-        ("own.csv", "vertex,j1\n0,1\n", "has no mesh: say which (--mesh)"),
-        ("own.txt", "", "must end in .npz, .json or .csv"),
+        ("a.npz", {"offsets": np.array([0, 2, 4])}, "offsets: has 3 entries, 3 vertices need 4"),
+        ("a.npz", {"offsets": np.array([0, 2, 4, 4])}, "offsets: must rise from 0 to 5"),
+        ("a.npz", {"offsets": np.array([0, 4, 2, 5])}, "offsets[2]: must rise from 0 to 5"),
+        ("a.npz", {"offsets": np.array([0.0, 2, 4, 5])}, "offsets: must be whole numbers"),
+        ("a.npz", {"names": np.array(["up"])}, "names: has 1 entries for 5 configurations"),
+        ("a.npz", {"joints": np.array([1])}, "joints: is unknown"),
+        ("a.npz", {"vertices": np.array(1.0)}, "vertices: has 0 dimensions, must have 2"),
+        (
+            "a.npz",
+            {"configurations": np.full((5, 2), np.nan)},
+            "configurations[0][0][0]: is not a finite",
+        ),
+        ("a.npz", "no archive", "is no archive of arrays"),
+        ("a.json", '{"vertices": [], "faces": []}', "configurations: is missing"),
+        ("a.json", '{"vertices": 1, "faces": [], "configurations": []}', "vertices: must be"),
+        ("bare.csv", "vertex,j1\n0,1\n", "has no mesh: say which (--mesh)"),
+        ("a.txt", "", "must end in .npz, .json or .csv"),
+        ("a.csv", "x,y\n", "line 1: must begin with vertex"),
+        ("a.csv", "vertex,j1\n0,1,2\n", "line 2: has 3 columns, line 1 has 2"),
+        ("a.csv", "vertex,j1\n0,one\n", "line 2: is no row of numbers"),
+        ("a.csv", "vertex,j1\n0,1\n7,1\n", "line 3: there is no vertex 7, the mesh has 3"),
     ],
 )
-def test_what_is_no_file_of_joint_solutions_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, content: str, message: str
+def test_a_wrong_file_is_refused_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, content: Any, message: str
 ) -> None:
-    source = tmp_path / name
-    source.write_text(content)
-    assert main(["label", str(source), "-o", str(tmp_path / "s.json")]) == 2
-    assert f"{source}: {message}" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("rows", "message"),
-    [
-        ("x,y\n", "line 1: must begin with vertex"),
-        ("vertex,j1\n0,1,2\n", "line 2: has 3 columns, line 1 has 2"),
-        ("vertex,j1\n0,one\n", "line 2: is no row of numbers"),
-        ("vertex,j1\n0,1\n7,1\n", "line 3: there is no vertex 7, the mesh has 3"),
-    ],
-)
-def test_a_wrong_row_is_named(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], rows: str, message: str
-) -> None:
-    source, mesh = tmp_path / "own.csv", tmp_path / "mesh.obj"
-    source.write_text(rows)
+    source, mesh, output = (tmp_path / file for file in (name, "mesh.obj", "s.json"))
     mesh.write_text(MESH)
-    output = tmp_path / "s.json"
-    assert main(["label", str(source), "--mesh", str(mesh), "-o", str(output)]) == 2
-    assert f"{source}: {message}" in capsys.readouterr().err
+    if isinstance(content, str):
+        source.write_text(content)
+    else:
+        np.savez(source, **(ARCHIVE | content))
+    options = ["--mesh", str(mesh)] if name == "a.csv" else []
+    assert main(["label", str(source), "-o", str(output), *options]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f"{source}: {message}" in line
+    assert not output.exists()

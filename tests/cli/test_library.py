@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from commands import json_lines, run
 
 import cellcolor
+from cellcolor.data.imcgs import read_imcgs
+from cellcolor.data.library_index import LibraryIndex
+from cellcolor.door.installed import Library
 
 Capture = pytest.CaptureFixture[str]
 INDEX = cellcolor.library().index
@@ -71,21 +75,7 @@ def test_a_graph_that_is_in_the_library_is_recognised(
     """By its fingerprint: the figure of two cells, written in the other format."""
     source, output = tmp_path / "graph.txt", tmp_path / "two.json"
     source.write_text(GRAPH, encoding="utf-8")
-    graph = read_alone(source)
-    entry = INDEX["ring"]
-
-    from dataclasses import replace
-
-    from cellcolor.data.library_index import LibraryIndex
-    from cellcolor.door.installed import Library
-
-    index = LibraryIndex((replace(entry, fingerprint=graph.sha256),))
+    index = LibraryIndex((replace(INDEX["ring"], fingerprint=read_imcgs(source).sha256),))
     monkeypatch.setattr(Library, "index", index)
     assert run("import", source, "-o", output) == 0
     assert capsys.readouterr().out.endswith("This is ring of the library: 2 segments.\n")
-
-
-def read_alone(source: Path) -> cellcolor.Instance:
-    from cellcolor.data.imcgs import read_imcgs
-
-    return read_imcgs(source)

@@ -70,17 +70,6 @@ def test_a_foreign_plan_beside_it_is_not_overwritten(
     assert not (tmp_path / "x.surface.json").exists()
 
 
-def test_out_of_time_nothing_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    solution = tmp_path / "solution.json"
-    ring = PAPER / "ring.surface.json"
-    assert run("solve", ring, "-o", solution) == 0
-    capsys.readouterr()
-    output = tmp_path / "x.surface.json"
-    assert run("paint", ring, solution, "-o", output, "--time-limit", "1e-6") == 3
-    assert "not painted" in capsys.readouterr().err
-    assert not output.exists()
-
-
 def test_in_python() -> None:
     result = cellcolor.solve("parallel-corridors.surface.json", search_space="surface")
     painting = cellcolor.paint("parallel-corridors.surface.json", result)

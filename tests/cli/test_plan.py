@@ -35,7 +35,7 @@ from cellcolor.door.planned import KINDS
 from cellcolor.errors import InputError
 from cellcolor.exports.registry import EXPORTS
 from cellcolor.frontend.scene import Scene
-from cellcolor.questions.explanation import Explanation, RelaxedMinimum
+from cellcolor.questions.answers import Explanation, RelaxedMinimum
 from cellcolor.questions.placements import PlacedMinimum, Placements
 
 OTHER_ARMS = {name for name in KINDS if name.endswith((".mod", ".src", ".ls"))}
@@ -107,17 +107,6 @@ def test_all_files_are_there_and_belong_together(
     assert "warning: the object's edges are up to" in said.err  # what `build` warns of
 
 
-@pytest.mark.usefixtures("asked")
-def test_a_second_time_the_files_are_replaced(scene: Path, tmp_path: Path) -> None:
-    folder = tmp_path / "folder"
-    assert run("plan", scene, "-o", folder) == 0
-    first = {file.name: file.read_bytes() for file in folder.iterdir()}
-    assert run("plan", scene, "-o", folder) == 0
-    timed = {"instance.json", "instance.surface.json", "solution.json", "painted.surface.json"}
-    for name in first.keys() - timed:
-        assert (folder / name).read_bytes() == first[name], name
-
-
 def test_keys_of_the_setup_are_replaced(scene: Path, tmp_path: Path, asked: dict[str, Any]) -> None:
     options = ["--spacing-m", "0.02", "--speed-m-per-s", "0.1", "--home-rad", "0,-1,1,-1,-1,0"]
     options += ["--even-feed", "--least-feed", "0.5"]
@@ -129,11 +118,11 @@ def test_keys_of_the_setup_are_replaced(scene: Path, tmp_path: Path, asked: dict
     assert motion.tool_radius_m == 0.015  # of the setup
     assert asked["pattern"] == "contour"
     # What the surface is does not depend on how the arm moves later.
-    assert run("plan", scene, "-o", tmp_path / "b") == 0
-    surfaces = [LabelledSurface.read(tmp_path / f / "instance.surface.json") for f in "ab"]
-    assert surfaces[0].sha256 == surfaces[1].sha256
+    surface = LabelledSurface.read(tmp_path / "a" / "instance.surface.json")
+    built = cellcolor.build(scene).surface
+    assert surface.sha256 == built.sha256
     for key in ("scene", "setup"):
-        assert surfaces[0].meta[key] == surfaces[1].meta[key]
+        assert surface.meta[key] == built.meta[key]
 
 
 def without_motion(scene: Path) -> Path:
@@ -274,6 +263,7 @@ def test_a_time_limit_before_the_painting_leaves_the_number(
     assert not [name for name in written if "painted" in name]
 
 
+@pytest.mark.second
 @pytest.mark.usefixtures("asked")
 def test_a_question_without_an_answer_is_said_with_the_reason(
     scene: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
@@ -410,19 +400,4 @@ def test_where_nothing_can_be_covered_it_says_what_build_says(
 def test_a_time_limit_too_short_for_anything(scene: Path, tmp_path: Path, capsys: Capture) -> None:
     assert run("plan", scene, "-o", tmp_path / "a", "--time-limit", "0.001") == 3
     assert "time limit" in capsys.readouterr().err
-    assert not (tmp_path / "a").exists()
-
-
-@pytest.mark.usefixtures("asked")
-def test_what_cannot_be_written_leaves_nothing(
-    scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Where the last file fails, none of those before it is there, nor the folder."""
-    import cellcolor.door.planned
-
-    def fail(_: object) -> bytes:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(cellcolor.door.planned.PlannedScene, "page", fail)
-    assert run("plan", scene, "-o", tmp_path / "a" / "b") == 2
     assert not (tmp_path / "a").exists()

@@ -91,10 +91,3 @@ class TestFiles:
         assert not re.search(r"<(link|img|iframe)\s[^>]*(src|href)=", page.partition("<script")[0])
         assert not re.search(r"""\ssrc=["']?(https?:)?//""", page)
         assert "default-src 'none'" in page and len(page) < 1_000_000
-
-    def test_an_existing_file_is_replaced_whole(self, tmp_path: Path) -> None:
-        path = saved(DRAWN, tmp_path)
-        (tmp_path / "x.png").touch()
-        show(path, "-o", tmp_path / "x.png")
-        assert (tmp_path / "x.png").read_bytes()[:4] == b"\x89PNG"
-        assert sorted(tmp_path.iterdir()) == [path, tmp_path / "x.png"]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from documents import Document
 from library import PAPER
-from pages import DRAWN, WOK, saved, side_file, small_wok
+from pages import DRAWN, saved, side_file, small_wok
 
 from cellcolor.cli import main
 from cellcolor.data.instance import SurfaceReference
@@ -153,15 +153,3 @@ def test_library_not_installed(
     refused(arguments, capsys, "matplotlib", "pip install 'fewest-lift-offs[viz]'")
     assert list(tmp_path.iterdir()) == [path]
     assert main(["show", str(path), "-o", str(tmp_path / "y.html")]) == 0
-
-
-def test_front_end_not_installed(
-    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for module in [name for name in sys.modules if name.startswith("cellcolor.frontend")]:
-        monkeypatch.delitem(sys.modules, module)
-    for package in ("pinocchio", "trimesh", "fcl"):
-        monkeypatch.setitem(sys.modules, package, None)
-    arguments: list[object] = [WOK, "--view", "reasons", "-o", tmp_path / "x.png"]
-    refused(arguments, capsys, str(WOK), "pip install 'fewest-lift-offs[frontend]'")
-    assert list(tmp_path.iterdir()) == []

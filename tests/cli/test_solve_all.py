@@ -18,8 +18,7 @@ import cellcolor.solvers.checked
 import cellcolor.solvers.cpsat.frontier
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
-from cellcolor.data.schemes import read_schemes, scheme_line
-from cellcolor.data.solution import Division, Solution, scheme_key
+from cellcolor.data.solution import Division, Solution, read_schemes, scheme_key, scheme_line
 from cellcolor.deadline import OutOfTime
 
 ZEROS = PAPER / "crossing-zeros.json"

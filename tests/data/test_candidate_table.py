@@ -32,11 +32,6 @@ def test_build_writes_it_beside_the_surface(tmp_path: Path) -> None:
     assert not list(tmp_path.glob(".*"))
 
 
-def test_same_result_same_bytes() -> None:
-    result = build_surface(shipped("wok", 50))
-    assert result.candidates.to_bytes() == result.candidates.to_bytes()
-
-
 def test_more_colors_than_sixteen_bits_tell(tmp_path: Path) -> None:
     """A noisy surface can have a color for each vertex; files with 16 bits stay readable."""
     result = build_surface(shipped("wok", 50))

@@ -12,6 +12,7 @@ from documents import (
     PLAN,
     SOLUTION,
     SURFACE,
+    TOOL_PATHS,
     TRAJECTORY,
     VERDICT,
     Change,
@@ -26,14 +27,16 @@ from meshes import surfaces
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
-from cellcolor.data.schemes import read_schemes, scheme_line
 from cellcolor.data.solution import (
     CellDivision,
     Solution,
     SubCell,
+    read_schemes,
     scheme_key,
+    scheme_line,
 )
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.decomposition import decompose
@@ -56,6 +59,7 @@ KINDS: dict[type[Kind], Document] = {
     Plan: PLAN,
     Trajectory: TRAJECTORY,
     TrajectoryVerdict: VERDICT,
+    ToolPaths: TOOL_PATHS,
 }
 
 
@@ -346,6 +350,16 @@ VERDICT_FAULTS = {
 }
 
 
+TOOL_PATHS_FAULTS = {
+    "one point": (put("paths", 0, "points", to=[[0, 0, 0]]), "paths[0].points", "two points"),
+    "no point": (put("paths", 0, "points", to=[]), "paths[0].points", "at least two points"),
+    "normals": (put("paths", 0, "normals", to=[[0, 0, 1]]), "paths[0].normals", "1 entries for 3"),
+    "faces": (put("paths", 0, "faces", to=[0]), "paths[0].faces", "1 entries for 2 steps"),
+    "text": (put("paths", 0, "points", to=[["a", 0, 0]]), "paths[0].points[0][0]", "number"),
+    "color": (put("paths", 0, "color", to=1.0), "paths[0].color", "integer"),
+}
+
+
 def _cases() -> list[Any]:
     faults = {
         LabelledSurface: SURFACE_FAULTS,
@@ -354,6 +368,7 @@ def _cases() -> list[Any]:
         Plan: PLAN_FAULTS,
         Trajectory: TRAJECTORY_FAULTS,
         TrajectoryVerdict: VERDICT_FAULTS,
+        ToolPaths: TOOL_PATHS_FAULTS,
     }
     return [
         pytest.param(kind, *fault, id=f"{kind.__name__}: {name}")

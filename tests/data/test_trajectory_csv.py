@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellcolor.data.trajectory_csv import read_trajectory_csv
+from cellcolor.data.trajectory import read_trajectory_csv
 from cellcolor.errors import InputError
 from examples import examples
 

@@ -120,25 +120,6 @@ def test_what_is_not_named_is_not_imported(tmp_path: Path) -> None:
         assert "torus_part" in sys.modules
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (("torus_part:Torus", "torus_part:Tyre"), "cannot be loaded: AttributeError"),
-        (("torus_part:Torus", "no_such_module:Torus"), "cannot be loaded: ModuleNotFound"),
-        (("torus_part:Torus", "torus_part:mesh_surface"), "is no Part"),
-        (("torus = ", "tyre = "), "there is no 'torus'; there are .*, mesh, tyre"),
-        (("torus = ", "torus = torus_part:Part\ntorus = "), "is registered as .* and as "),
-    ],
-)
-def test_faulty_registrations(tmp_path: Path, change: tuple[str, str], message: str) -> None:
-    with followed("extend", PARTS_AND_TESTS, tmp_path, run=False):
-        points = tmp_path / "toy-1.0.dist-info" / "entry_points.txt"
-        points.write_text(points.read_text().replace(*change))
-        with pytest.raises(InputError, match=message) as caught:
-            Scene.read("torus.toml")
-        assert (caught.value.file, caught.value.field) == ("torus.toml", "object")
-
-
 def test_no_reason_has_two_meanings(tmp_path: Path) -> None:
     with followed("extend", PARTS_AND_TESTS, tmp_path) as names:
         zone = names["scene"].validity_test[0]
@@ -146,13 +127,6 @@ def test_no_reason_has_two_meanings(tmp_path: Path) -> None:
         with pytest.raises(InputError, match="a reason 'torque' already") as caught:
             Scene.read("torus.toml")
         assert (caught.value.file, caught.value.field) == ("torus.toml", "validity_test[0]")
-
-
-def test_an_unknown_family_of_arms() -> None:
-    scene = shipped("wok").varied(setup={"robot": {"kinematics": "tentacle"}})
-    with pytest.raises(InputError, match="there is no 'tentacle'; there are ur") as caught:
-        build_surface(scene)
-    assert caught.value.field == "robot.kinematics"
 
 
 def test_a_missing_angle_of_the_locked_joint() -> None:

@@ -11,7 +11,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
-from guides import ROOT, Block, blocks, follow, install, run, section
+from guides import ROOT, Block, blocks, follow, install, run
 
 from cellcolor.data.surface import LabelledSurface
 
@@ -96,14 +96,6 @@ def test_a_bound(clone: Path) -> None:
         follow(block, clone)
     done = run([sys.executable, "-c", example.text], clone, clone)
     assert (done.returncode, done.stdout) == (0, printed.text), done.stderr
-
-
-@pytest.mark.parametrize(
-    ("guide", "heading"),
-    [("add-a-solver", ""), ("extend", "A picture")],
-)
-def test_one_screen(guide: str, heading: str) -> None:
-    assert len(section(guide, heading).splitlines()) <= 80
 
 
 @pytest.mark.slow

@@ -49,13 +49,6 @@ def test_links_lead_somewhere() -> None:
                 assert anchor in there[target], f"{page.name} links to {link}"
 
 
-def test_a_broken_link_is_found(tmp_path: Path) -> None:
-    page = tmp_path / "page.md"
-    page.write_text("# One, two\n[a](#one-two) [b](none.md)\n```\n[c](code)\n```\n`[d](code)`\n")
-    assert links(page) == ["#one-two", "none.md"]
-    assert anchors(page) == {"one-two"}
-
-
 def test_each_term_has_a_figure_and_each_figure_a_page() -> None:
     concepts = ROOT / "docs" / "concepts.md"
     shown = {Path(link).stem for link in links(concepts) if link.startswith("figures/")}

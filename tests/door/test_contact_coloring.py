@@ -12,7 +12,7 @@ from meshes import drawn, surfaces
 
 import cellcolor
 from cellcolor.checker.vertex_plan import check_plan
-from cellcolor.data.joint_plan import VertexContacts
+from cellcolor.data.plan import VertexContacts
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.door.joint_plans import coloring_of
 from cellcolor.oracle import ProvenRange

@@ -10,8 +10,7 @@ import pytest
 import yaml
 from stand_in import stand_in
 
-from cellcolor.data.trajectory import Trajectory
-from cellcolor.data.trajectory_csv import read_trajectory_csv
+from cellcolor.data.trajectory import Trajectory, read_trajectory_csv
 from cellcolor.errors import InputError
 from cellcolor.exports.interface import PlannedMotion
 from cellcolor.exports.registry import EXPORTS

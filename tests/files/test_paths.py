@@ -10,7 +10,7 @@ import pytest
 
 import cellcolor
 from cellcolor import InputError
-from cellcolor.files.paths import path_of
+from cellcolor.files.writing import path_of
 
 RESULT = cellcolor.solve("ring")
 FUNCTIONS: dict[str, Any] = {

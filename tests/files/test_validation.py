@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from documents import INSTANCE, SOLUTION
+from documents import INSTANCE
 from hypothesis import given
 from hypothesis import strategies as st
 from meshes import drawn, surfaces
@@ -25,11 +25,7 @@ from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance, KnownResult, KnownResults, SurfaceReference
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import (
-    CellDivision,
-    InstanceReference,
-    ModelSize,
     Seam,
-    Solution,
     SubCell,
 )
 from cellcolor.data.surface import Crack, LabelledSurface
@@ -114,7 +110,7 @@ def test_colors_of_vertices_out_of_order_are_one_cell() -> None:
     assert [cell.colors for cell in decompose(mixed).cells] == [(0, 1)]
 
 
-def test_graphs_and_solutions_are_those_of_the_file() -> None:
+def test_graphs_are_those_of_the_file() -> None:
     one, two = np.int64(1), np.int16(2)
     made: Any = Instance(
         "pair",
@@ -136,33 +132,8 @@ def test_graphs_and_solutions_are_those_of_the_file() -> None:
     )
     assert made == Instance.from_document(INSTANCE)
     assert json.loads(made.to_json()) == INSTANCE
-    solution: Any = Solution(
-        instance=InstanceReference("pair", "0" * 64),
-        search_space="surface",
-        strands=two,
-        solver="cp-sat",
-        status="optimal",
-        segments=one,
-        lift_offs=np.uint8(0),
-        lower_bound=one,
-        surface_lower_bound=1,
-        proved_for_surface=True,
-        seams=[Seam(np.int64(5), one, 3, -4, two)],
-        cells=[
-            CellDivision(0, [SubCell(0, np.array([[1, 1], [1, 2]]), 0)]),
-            CellDivision(one, [SubCell(0, [[-1, two], (-1, 1)], 0)]),
-        ],
-        seconds=np.float32(0.25),
-        bounds=[Bound("cover", one, "surface", {"regions": ()})],
-        coverage=made.coverage,
-        notes=["The model was too large to be built."],
-        model=ModelSize(np.int64(40), 90),
-    )
-    assert solution == Solution.from_document(SOLUTION)
-    assert json.loads(solution.to_json()) == SOLUTION
 
 
-CELL = Cell(0, (0,), ((1,),))
 REFUSED: dict[str, tuple[Callable[[], object], str, str]] = {
     "cell numbered True": (lambda: Cell(True, (0,), ()), "id", "integer"),
     "color as float": (lambda: Cell(0, (1.0,), ()), "colors[0]", "integer"),

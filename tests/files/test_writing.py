@@ -118,14 +118,6 @@ class TestForeignFiles:
             write([instance_at(path)])
         assert path.read_bytes() == OLD
 
-    @pytest.mark.parametrize("command", ["build", "solve"])
-    def test_commands(self, command: str, tmp_path: Path, capsys: Capture) -> None:
-        mesh = tmp_path / "part.stl"
-        mesh.write_text("solid part")
-        source = RING_SURFACE if command == "build" else RING
-        refused([command, source, "-o", mesh], capsys, "part.stl", "not overwritten")
-        assert mesh.read_text() == "solid part"
-
     def test_inputs(self, tmp_path: Path, capsys: Capture) -> None:
         """An input is not overwritten, whatever name it has."""
         given = tmp_path / "given.json"
@@ -145,14 +137,6 @@ class TestForeignFiles:
         assert run("build", surface, "-o", instance) == 0
         refused(["solve", instance, "-o", surface], capsys, str(surface), "not overwritten")
         assert surface.read_bytes() == before
-
-    def test_several_outputs(self, tmp_path: Path, capsys: Capture) -> None:
-        """Nothing is solved before it is known that all can be written."""
-        plan = tmp_path / "crossing-zeros.solution.json"
-        plan.write_text(json.dumps(PLAN))
-        files = [RING, PAPER / "crossing-zeros.json"]
-        refused(["solve", *files, "-o", tmp_path], capsys, str(plan), "not overwritten")
-        assert list(tmp_path.iterdir()) == [plan]
 
 
 class TestPictures:
@@ -189,13 +173,6 @@ class TestPlaces:
         other.symlink_to(one)
         with pytest.raises(InputError, match=r"circle|symbolic links"):
             write([instance_at(one)])
-
-    def test_two_names_of_one_place(self, tmp_path: Path) -> None:
-        real, link = tmp_path / "real", tmp_path / "link"
-        link.symlink_to(real)
-        with pytest.raises(InputError, match="two files"):
-            write([instance_at(real), instance_at(link)])
-        assert list(tmp_path.iterdir()) == [link]
 
     def test_null_device(self) -> None:
         before = Path(os.devnull).stat()

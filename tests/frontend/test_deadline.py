@@ -15,9 +15,8 @@ from shipped import shipped
 from cellcolor.cli import main
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.build import build_prepared
+from cellcolor.frontend.build import StageClock, build_prepared
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.stage_clock import StageClock
 
 STAGES = [
     "preparation",

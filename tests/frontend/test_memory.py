@@ -14,7 +14,7 @@ from shipped import shipped
 from cellcolor import memory
 from cellcolor.errors import TooLarge
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.trajectory_checker.repeated import _near
+from cellcolor.trajectory_checker.area import _near
 
 pytestmark = pytest.mark.second
 

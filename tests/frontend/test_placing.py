@@ -12,12 +12,11 @@ from shipped import shipped
 from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
 from cellcolor.frontend import prepared as module
-from cellcolor.frontend.build import build_prepared
+from cellcolor.frontend.build import StageClock, build_prepared
 from cellcolor.frontend.contact import engine
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach import prepared_arm
-from cellcolor.frontend.stage_clock import StageClock
 
 SHIFTS = st.floats(-0.2, 0.2)
 ANGLES = st.floats(-math.pi, math.pi)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
-import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -75,12 +73,6 @@ class TestOneProcess:
 
 
 class TestManyProcesses:
-    def test_each_comes_back_with_its_name(self) -> None:
-        tasks = [(number, Task(odd_jobs.double, (number,), LONG)) for number in range(4)]
-        with Workers(2) as workers:
-            found = {name: ended.value for name, ended in as_they_end(workers, tasks)}
-        assert found == {number: 2 * number for number in range(4)}
-
     def test_a_task_is_made_when_there_is_a_worker_for_it(self) -> None:
         made: list[int] = []
 
@@ -108,25 +100,3 @@ class TestManyProcesses:
             odd_jobs.wait_until_noted(pids, 2)
             raise KeyboardInterrupt
         odd_jobs.wait_until_ended(pids)
-
-    @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
-    def test_no_orphans_of_a_killed_program(self, tmp_path: Path, number: signal.Signals) -> None:
-        pids = tmp_path / "pids"
-        script = (
-            "import odd_jobs, signal, sys\n"
-            "signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # if it was ignored
-            "from cellcolor.lab.workers import Task, Workers, as_they_end\n"
-            "task = Task(odd_jobs.hang, (sys.argv[1],), 600.0)\n"
-            "with Workers(1) as workers:\n"
-            "    list(as_they_end(workers, [(0, task)]))\n"
-        )
-        environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-        command = [sys.executable, "-c", script, str(pids)]
-        process = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL)
-        try:
-            odd_jobs.wait_until_noted(pids, 2)
-            process.send_signal(number)
-            assert process.wait(60) == -number
-            odd_jobs.wait_until_ended(pids)
-        finally:
-            process.kill()

@@ -15,8 +15,7 @@ from cellcolor.deadline import NEVER
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion import courses
 from cellcolor.motion.courses import Course, laid_out
-from cellcolor.motion.following import Followed
-from cellcolor.motion.samples import DISTANCE, Samples, even_places, sampled
+from cellcolor.motion.following import DISTANCE, Followed, Samples, even_places, sampled
 from cellcolor.tool_paths.cover import cover
 from cellcolor.tool_paths.registry import PATTERNS
 

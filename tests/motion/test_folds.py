@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from cellcolor.deadline import NEVER
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.motion.refusing import FOLDED, ArmRefusals
-from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
+from cellcolor.motion.small_triangles import FOLDED, ArmRefusals, CornerStates, SmallTriangles
 
 POINTS = np.array([[0, 0, 0], [1, 0, 0], [0.5, 1, 0], [0.5, -0.3, 0]]) * 0.02
 FACES = np.array([[0, 1, 2], [0, 3, 1]])

@@ -16,8 +16,7 @@ from cellcolor.frontend.contact.engine import always_touching, pairs_of
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.motion.free_space import FreeSpace
-from cellcolor.motion.home import home_of
-from cellcolor.motion.limits import motion_of
+from cellcolor.motion.limits import home_of, motion_of
 
 HEIGHT = 0.44  # m; of a ground that the arm at home reaches into
 

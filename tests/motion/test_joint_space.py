@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.motion.free_space import FreeSpace
-from cellcolor.motion.home import free_near
+from cellcolor.motion.limits import free_near
 
 MIXED = st.lists(
     st.tuples(st.booleans(), st.floats(-9.0, 9.0), st.floats(-9.0, 9.0)), min_size=1, max_size=4

@@ -13,11 +13,9 @@ from hypothesis import strategies as st
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import NEVER
 from cellcolor.frontend.arm.joint_space import JointSpace
-from cellcolor.motion.following import Followed
-from cellcolor.motion.order import ordered
-from cellcolor.motion.samples import Samples, sampled
+from cellcolor.motion.following import Followed, Samples, sampled
+from cellcolor.motion.order import Visit, chosen_turns, ordered
 from cellcolor.motion.strokes import Stroke, cut_where_full, trimmed
-from cellcolor.motion.turns import Visit, chosen_turns
 from cellcolor.motion.ways import quickest_way
 
 ANGLES = st.floats(-3.0, 3.0)

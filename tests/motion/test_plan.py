@@ -18,7 +18,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import prepare
 from cellcolor.motion.limits import motion_of
 from cellcolor.motion.plan import plan_motion
-from cellcolor.motion.refusing import ArmRefusals
+from cellcolor.motion.small_triangles import ArmRefusals
 from cellcolor.tool_paths.refused import Codes
 from cellcolor.trajectory_checker.check import check_trajectory
 

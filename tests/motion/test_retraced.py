@@ -9,7 +9,7 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from cellcolor.motion.retraced import retraced, stretches
+from cellcolor.motion.assembly import retraced, stretches
 from examples import examples
 
 WAYS = st.sampled_from([(1, 0), (-1, 0), (0, 1), (0, -1)])

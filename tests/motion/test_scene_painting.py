@@ -21,8 +21,8 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.lab.families.voronoi import voronoi
 from cellcolor.motion import scene_painting
+from cellcolor.motion.following import Samples, with_normals_of
 from cellcolor.motion.posture import color_costs
-from cellcolor.motion.samples import Samples, with_normals_of
 from cellcolor.motion.scene_painting import ScenePainting, paint_scene
 from cellcolor.painting.refined import interpolated, unrefined
 from cellcolor.solvers.checked import solve
@@ -140,7 +140,7 @@ def test_what_is_left_alone_stays_so_on_a_finer_surface(wok: BuildResult) -> Non
     assert (
         beyond.max()
         < np.median(wok.surface.vertices[:, 0])
-        + wok.prepared.surface.lengths(wok.prepared.surface.edges()).max()
+        + wok.prepared.surface.lengths(wok.prepared.surface.mesh.edges).max()
     )
 
 

@@ -10,7 +10,7 @@ class TestFaultyPart:
         from dirty import DIRTY
 
         import cellcolor
-        from cellcolor.pictures.faulty_part import faulty_part
+        from cellcolor.pictures.mesh_picture import faulty_part
 
         expected = {
             "duplicates": "faces there twice: 40",

@@ -19,8 +19,7 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose, decomposition_of
 from cellcolor.errors import InputError
-from cellcolor.pictures.palette import paints_of
-from cellcolor.pictures.picture import Line
+from cellcolor.pictures.picture import Line, paints_of
 from cellcolor.pictures.surface_pictures import draw_cells, draw_color, draw_plan, draw_segments
 from cellcolor.pictures.topological_graph import draw_graph
 

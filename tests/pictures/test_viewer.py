@@ -13,7 +13,7 @@ from pages import DESKTOP, PHONE, opened
 from PIL import Image
 
 import cellcolor
-from cellcolor.pictures.palette import paints_of
+from cellcolor.pictures.picture import paints_of
 
 pytestmark = pytest.mark.second
 

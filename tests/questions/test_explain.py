@@ -18,7 +18,7 @@ from shipped import SCENES, shipped
 import cellcolor
 from cellcolor.deadline import NEVER
 from cellcolor.frontend import BuildResult, Scene, build_surface
-from cellcolor.frontend.build import build_prepared
+from cellcolor.frontend.build import StageClock, build_prepared
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.reach import validity
 from cellcolor.frontend.relaxing import (
@@ -29,8 +29,7 @@ from cellcolor.frontend.relaxing import (
     relaxations_of,
     without,
 )
-from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.questions.explanation import Explanation, RelaxedMinimum
+from cellcolor.questions.answers import Explanation, RelaxedMinimum
 from examples import examples
 
 pytestmark = pytest.mark.second

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -158,7 +159,7 @@ def test_how_far_a_placement_may_be_off(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr("cellcolor.questions.searching_places._TOGETHER", 4)
     found = place(points=2, best=1, leeway=0.2, cover=0.5)
     (row,) = found.best
-    assert row.leeway is not None and row.leeway.to_document() == row.to_document()["leeway"]
+    assert row.leeway is not None and asdict(row.leeway) == row.to_document()["leeway"]
     own = shipped("wok_obstacle", 80)
     holds, shares = 0.0, [row.covered_share]
     beside_it = displaced(own.covered().vertices, row.pose, 0.2, 6, 0)

@@ -253,8 +253,6 @@ def test_what_cannot_be_set_up_is_refused_in_a_line(
     for price in (float("nan"), 1e17, 1e306, 0.5):
         with pytest.raises(cellcolor.InputError, match=r"change_over: must be .* 1 to 1000000"):
             cellcolor.setups("wok_obstacle", change_over=price)
-    with pytest.raises(cellcolor.InputError, match="change_over: must have no more than three"):
-        choose([], 1.0, 1.0004, Options())
 
 
 def test_candidates_that_the_time_limit_left_unbuilt_are_said(

@@ -22,7 +22,7 @@ from cellcolor.deadline import OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.questions import tradeoff
-from cellcolor.questions.front import Front
+from cellcolor.questions.answers import Front
 from cellcolor.questions.tradeoff import front_of
 from cellcolor.solvers.interface import Options
 from examples import examples

@@ -7,8 +7,8 @@ from itertools import pairwise
 import pytest
 
 from cellcolor.checker.certificates import verify_bound
-from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.division import check_solution
+from cellcolor.checker.groups import regions_of_cells
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance

@@ -13,8 +13,8 @@ from cellcolor.data.solution import count_segments, number_segments
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families.registry import SMALL
 from cellcolor.solvers.checked import solve
+from cellcolor.solvers.cpsat.painting import joined
 from cellcolor.solvers.interface import Options
-from cellcolor.solvers.joining import joined
 from examples import examples
 
 

@@ -17,7 +17,6 @@ from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, RefusedResult
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import STRANDS, Options
-from cellcolor.solvers.registry import make_solver
 
 RING = Instance.read(PAPER / "ring.json")
 CORRIDORS = Instance.read(PAPER / "parallel-corridors.json")
@@ -80,7 +79,7 @@ def test_the_oracle_refuses_before_it_searches(options: dict[str, int]) -> None:
 def test_what_a_solver_cannot_do_is_not_done_silently() -> None:
     for solver in ("cp-sat", "dfs"):
         with pytest.raises(InputError, match="search_space"):
-            list(make_solver(solver).optimal_schemes(CORRIDORS, Options("surface", 2), 2))
+            list(enumerate_schemes(CORRIDORS, Options("surface", 2), solver, 2))
 
 
 def test_no_scheme_at_all_contradicts_the_minimum() -> None:

@@ -19,7 +19,7 @@ from rooms import four_colors_in_turn
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.errors import InputError, TooLarge
-from cellcolor.files.paths import shipped_folder
+from cellcolor.files.writing import shipped_folder
 from cellcolor.lab.families import hub, planar_graph
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options

@@ -27,8 +27,7 @@ from cellcolor.lab.families.registry import SMALL
 from cellcolor.processes import Child
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.choco import solver as choco
-from cellcolor.solvers.choco.model import Ranks
-from cellcolor.solvers.choco.problem import Problem
+from cellcolor.solvers.choco.model import Problem, Ranks
 from cellcolor.solvers.clingo import asp_facts
 from cellcolor.solvers.dfs import ReferenceSolver
 from cellcolor.solvers.interface import Options

@@ -19,7 +19,7 @@ from relabelled import turned
 from rooms import BLUE, GREEN, RED, graph, petal_cells
 
 from cellcolor.checker.division import check_scheme
-from cellcolor.checker.drawable import can_be_drawn
+from cellcolor.checker.scheme_rules import can_be_drawn
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, SchemeKey, number_segments, scheme_key
 from cellcolor.decomposition import decompose

@@ -14,8 +14,7 @@ from shipped import TOP, shipped
 
 import cellcolor
 from cellcolor.arrays import Array
-from cellcolor.data.joint_plan import ContactPath
-from cellcolor.data.plan import Plan
+from cellcolor.data.plan import ContactPath, Plan
 from cellcolor.frontend import Scene
 from cellcolor.frontend.build import BuildResult, build_surface
 from cellcolor.frontend.setup import Motion

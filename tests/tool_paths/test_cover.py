@@ -226,7 +226,7 @@ def test_what_another_distribution_registers_is_used(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     (tmp_path / "one_line.py").write_text(
-        "from cellcolor.tool_paths.interface import Laid\n"
+        "from cellcolor.tool_paths.registry import Laid\n"
         "def lay(mesh, spacing, deadline):\n"
         "    return Laid(mesh, mesh.corners[0, [0, 1]].tolist())\n"
     )

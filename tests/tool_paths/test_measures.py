@@ -9,9 +9,9 @@ import pytest
 from painted import slit, square
 
 from cellcolor.lab.families.meshes import grid_faces
-from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.measures import measure
 from cellcolor.tool_paths.region import regions_of
+from cellcolor.tool_paths.registry import Laid
 from cellcolor.tool_paths.rounding import line_of
 from cellcolor.tool_paths.triangles import Triangles
 

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 from scipy.spatial import Delaunay, cKDTree
 
 from cellcolor.data.surface import Crack, LabelledSurface
-from cellcolor.tool_paths.overlap import Overlap, clipped, owned
-from cellcolor.tool_paths.region import Segments, regions_of
+from cellcolor.tool_paths.region import Overlap, Segments, clipped, owned, regions_of
 from examples import examples
 
 NAMES = ("one", "other")

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.sparse.csgraph import dijkstra
 
 from cellcolor.deadline import NEVER
-from cellcolor.tool_paths.interface import Laid
+from cellcolor.tool_paths.registry import Laid
 from cellcolor.tool_paths.rounding import Line, line_of, rounded
 from cellcolor.tool_paths.triangles import Triangles
 from examples import examples

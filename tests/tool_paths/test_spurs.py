@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from cellcolor.deadline import NEVER
-from cellcolor.tool_paths.interface import Laid
+from cellcolor.tool_paths.registry import Laid
 from cellcolor.tool_paths.spurs import with_spurs
 from cellcolor.tool_paths.triangles import Triangles
 from examples import examples

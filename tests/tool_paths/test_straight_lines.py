@@ -9,9 +9,8 @@ from painted import square
 
 from cellcolor.deadline import NEVER
 from cellcolor.tool_paths.contour import lay_contours
-from cellcolor.tool_paths.distances import evened
 from cellcolor.tool_paths.region import Segments, regions_of
-from cellcolor.tool_paths.triangles import Triangles
+from cellcolor.tool_paths.triangles import Triangles, evened
 from examples import examples
 
 SPACING = 0.05

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.arrays import Array
-from cellcolor.data.joint_plan import ContactPath
+from cellcolor.data.plan import ContactPath
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import BuildResult
 from cellcolor.trajectory_checker.at_vertices import AtVertices, at_vertices, touches

@@ -140,7 +140,7 @@ def test_cracks_that_are_crossed() -> None:
     }
     random = np.random.default_rng(0)
     expected, cracks = 0, []
-    for i, j in random.permutation(prepared.surface.edges())[:60].tolist():
+    for i, j in random.permutation(prepared.surface.mesh.edges)[:60].tolist():
         middles = vertices[faces[(faces == i).any(axis=1) & (faces == j).any(axis=1)]].mean(axis=1)
         edge = (vertices[i] + vertices[j]) / 2
         walls = np.array([[middle, edge] for middle in middles])

@@ -13,11 +13,11 @@ from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER
 from cellcolor.errors import TooLarge
 from cellcolor.frontend.parts.surface import Surface
+from cellcolor.trajectory_checker.area import Strips, passes, repeated_stretches
 from cellcolor.trajectory_checker.contact import Contact
 from cellcolor.trajectory_checker.covered import reach
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, refined
-from cellcolor.trajectory_checker.repeated import Strips, passes, repeated_stretches
 from examples import examples
 
 

@@ -14,11 +14,16 @@ from forged_drives import FORGERS
 from honest_drives import Honest
 
 from cellcolor.data.candidate_table import VALID
-from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, RepeatedStretch, Trajectory
-from cellcolor.data.trajectory_csv import read_trajectory_csv
+from cellcolor.data.trajectory import (
+    ExtraLiftOff,
+    LeftOut,
+    RepeatedStretch,
+    Trajectory,
+    read_trajectory_csv,
+)
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.deadline import NEVER
-from cellcolor.exports.joint_table import joints_csv
+from cellcolor.exports.joint_files import joints_csv
 from cellcolor.frontend.prepared import prepare
 from cellcolor.trajectory_checker.check import check_trajectory
 from cellcolor.trajectory_checker.contact import Contact
@@ -26,8 +31,7 @@ from cellcolor.trajectory_checker.covered import failing_places
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.fine_mesh import refined
-from cellcolor.trajectory_checker.other_planners import completed
-from cellcolor.trajectory_checker.stated import judge_lift_offs
+from cellcolor.trajectory_checker.stated import completed, judge_lift_offs
 from cellcolor.trajectory_checker.tolerances import Limits
 
 

@@ -12,6 +12,7 @@ import copy
 import math
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
@@ -21,7 +22,6 @@ from cellcolor.data.wording import looks_like_degrees
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.urdf import (
     PRISMATIC,
-    Follower,
     Urdf,
     axis_of,
     inertial_fault,
@@ -29,6 +29,9 @@ from cellcolor.frontend.arm.urdf import (
 )
 
 _FLANGES = ("tool0", "flange", "ee_link", "tool_flange", "wrist_3_link", "link_6")  # of vendors
+
+FIX = "give its position under [robot.fixed_joints], as {} = 0.0"
+"""What to do about a joint that may not move, by its name."""
 
 Vector = tuple[float, float, float]
 
@@ -67,10 +70,8 @@ def mount(
     ET.SubElement(joint, "child", {"link": tool.root})
     pose = {"xyz": " ".join(map(repr, position)), "rpy": " ".join(map(repr, rpy))}
     ET.SubElement(joint, "origin", pose)
-    return Urdf(
-        file=arm.file,
-        folder=arm.folder,
-        root=arm.root,
+    return replace(
+        arm,
         links=arm.links | tool.links,
         joints=arm.joints | tool.joints | {name: joint},
         parent=arm.parent | tool.parent | {tool.root: flange},
@@ -81,22 +82,18 @@ def mount(
     )
 
 
-def settled(
-    urdf: Urdf, positions: Mapping[str, float]
-) -> tuple[dict[str, float], dict[str, Follower]]:
-    """The positions of all joints that stand still, and the followers that move.
+def settled(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, float]:
+    """The positions of all joints that stand still, rad, or m of prismatic ones.
 
-    What follows a follower is returned as if it followed the first leader directly. A leader that
-    is a fixed joint is at zero.
+    What follows such a joint stands still as well. A leader that is a fixed joint is at zero.
 
     Args:
-        positions: of joints that are fixed, rad, or m of prismatic ones.
+        positions: of joints that are fixed.
 
     Raises:
-        InputError: a joint follows one that is not there, or itself.
+        InputError: a joint follows one that moves, one that is not there, or itself.
     """
     standing = {name: at for name, at in positions.items() if name in urdf.kinds}
-    moving = {}
     for name in urdf.followers:
         leader, factor, offset, seen = name, 1.0, 0.0, {name}
         while leader in urdf.followers and leader not in positions:
@@ -108,10 +105,10 @@ def settled(
                 raise InputError(None, f"joint[{name}].mimic", fault)
             seen.add(leader)
         if leader in urdf.kinds and leader not in positions and factor:
-            moving[name] = Follower(leader, factor, offset)
-        else:
-            standing[name] = factor * positions.get(leader, 0.0) + offset
-    return standing, moving
+            fault = f"follows {leader!r}, which moves: {FIX.format(name)}"
+            raise InputError(None, f"joint[{name}].mimic", fault)
+        standing[name] = factor * positions.get(leader, 0.0) + offset
+    return standing
 
 
 def check_position(urdf: Urdf, name: str, position: float) -> None:
@@ -148,13 +145,6 @@ def pinocchio_models(
         geometry = pin.buildGeomFromUrdfString(model, text, pin.GeometryType.COLLISION)
     except (ValueError, RuntimeError) as error:
         raise InputError(str(urdf.file), "robot", f"Pinocchio refuses it: {error}") from error
-    return without(model, geometry, standing)
-
-
-def without(
-    model: pin.Model, geometry: pin.GeometryModel, standing: Mapping[str, float]
-) -> tuple[pin.Model, pin.GeometryModel]:
-    """The same without some joints, which stand still in the positions given."""
     if not standing:
         return model, geometry
     q = np.zeros(model.nq)

@@ -257,7 +257,6 @@ def place_shapes(
     whole: Urdf,
     model: pin.Model,
     geometry: pin.GeometryModel,
-    frames: Sequence[int],
     shapes: Shapes,
 ) -> tuple[tuple[Body, ...], tuple[StandIn, ...]]:
     """Bodies of all links, base first, and what stands for the meshes among them.
@@ -266,7 +265,6 @@ def place_shapes(
         trees: arm and tool, for the names and folders of their files.
         whole: both as one tree.
         model, geometry: as Pinocchio has read it, meshes as spheres.
-        frames: the number that the frame behind each joint has.
 
     Raises:
         InputError: Pinocchio has read other shapes, or a mesh cannot be found or read.
@@ -287,7 +285,7 @@ def place_shapes(
         if len(placed) != len(own):
             message = f"Pinocchio read {len(placed)} of {len(own)} shapes"
             raise InputError(str(whole.file), f"link[{link}].collision", message)
-        joint = frames[placed[0].parentJoint]
+        joint = placed[0].parentJoint
         bodies += _round_bodies(link, joint, own, placed)
         for number, (shape, at) in enumerate(zip(own, placed, strict=True)):
             if shape.kind not in ("box", "mesh"):

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from cellcolor.arrays import Array, Mask, unit
 from cellcolor.errors import InputError
@@ -25,36 +24,25 @@ class Poses:
     """Where everything is: frame 0 is the world, frame i the one behind joint i.
 
     Attributes:
-        body_rotation, body_origin: (n, frames, 3, 3), and (n, frames, 3) in m, of all frames that
-            bodies hang on; behind those of the joints are those of followers, if there are any.
+        rotation, origin: (n, joints + 1, 3, 3), and (n, joints + 1, 3) in m.
         axis: (n, joints, 3) joint axes.
         tip: (n, 3) tool tip in m.
         tool_axis: (n, 3) the tool's z axis, from the flange to the tip.
         slides: (joints,) which joints are prismatic.
     """
 
-    body_rotation: Array
-    body_origin: Array
+    rotation: Array
+    origin: Array
     axis: Array
     tip: Array
     tool_axis: Array
     slides: Mask
 
-    @property
-    def rotation(self) -> Array:
-        """(n, joints + 1, 3, 3)."""
-        return self.body_rotation[:, : self.axis.shape[1] + 1]
-
-    @property
-    def origin(self) -> Array:
-        """(n, joints + 1, 3) in m."""
-        return self.body_origin[:, : self.axis.shape[1] + 1]
-
     def take(self, rows: NDArray[np.intp]) -> Poses:
         """The poses of some of the configurations."""
         return Poses(
-            self.body_rotation[rows],
-            self.body_origin[rows],
+            self.rotation[rows],
+            self.origin[rows],
             self.axis[rows],
             self.tip[rows],
             self.tool_axis[rows],
@@ -66,10 +54,8 @@ def forward(robot: Robot, configurations: Array) -> Poses:
     """Poses of all frames for configurations (n, joints) in rad, prismatic joints in m."""
     n = len(configurations)
     # In memory joint after joint, so that one frame of all configurations is one piece.
-    frames = robot.joints + 1 + len(robot.followers)
-    all_rotations = np.empty((frames, n, 3, 3)).swapaxes(0, 1)
-    all_origins = np.empty((frames, n, 3)).swapaxes(0, 1)
-    rotation, origin = all_rotations[:, : robot.joints + 1], all_origins[:, : robot.joints + 1]
+    rotation = np.empty((robot.joints + 1, n, 3, 3)).swapaxes(0, 1)
+    origin = np.empty((robot.joints + 1, n, 3)).swapaxes(0, 1)
     axis = np.empty((n, robot.joints, 3))
     rotation[:, 0], origin[:, 0] = np.eye(3), 0.0
     for joint in range(robot.joints):
@@ -97,17 +83,7 @@ def forward(robot: Robot, configurations: Array) -> Poses:
         axis[:, joint] = turned(before, robot.axis[joint])
     tip = origin[:, -1] + turned(rotation[:, -1], robot.tip[:3, 3])
     tool_axis = turned(rotation[:, -1], robot.tip[:3, 2])
-    for frame, follower in enumerate(robot.followers, robot.joints + 1):
-        carrier, fixed = all_rotations[:, follower.parent], follower.placement
-        moved, position = carrier @ fixed[:3, :3], follower.position(configurations)[:, None]
-        all_origins[:, frame] = all_origins[:, follower.parent] + carrier @ fixed[:3, 3]
-        all_rotations[:, frame] = moved
-        if follower.slides:
-            all_origins[:, frame] += position * (moved @ follower.axis)
-        else:
-            turn = Rotation.from_rotvec(position * follower.axis).as_matrix()
-            all_rotations[:, frame] = moved @ turn.reshape(n, 3, 3)
-    return Poses(all_rotations, all_origins, axis, tip, tool_axis, robot.slides)
+    return Poses(rotation, origin, axis, tip, tool_axis, robot.slides)
 
 
 def turned(rotation: Array, columns: Array) -> Array:

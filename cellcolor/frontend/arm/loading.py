@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,19 +12,18 @@ import pinocchio as pin
 from cellcolor.arrays import Array, Mask
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.assembly import (
+    FIX,
     Vector,
     check_position,
     mount,
     pinocchio_models,
     settled,
-    without,
 )
 from cellcolor.frontend.arm.body import Body, Shapes, place_shapes
 from cellcolor.frontend.arm.notes import notes_on_tool
-from cellcolor.frontend.arm.robot import FollowingFrame, Robot
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.urdf import (
     PRISMATIC,
-    Follower,
     Urdf,
     effort_fault,
     inertial_fault,
@@ -35,7 +33,7 @@ from cellcolor.frontend.arm.urdf import (
 
 _FASTEST = 60.0  # rad/s
 _MOST_DEGREES = 800.0  # per second; beyond, as 1000, a velocity means that there is no limit
-_FIX = "give its position under [robot.fixed_joints], as {} = 0.0"
+_REAL = ("inertial", "visual")  # what a link has that is more than a frame
 _NO_FORCE = "or leave the force constraint out: force = false under [constraints] of the setup"
 _WAY_OUT = (
     "; with more the arm is redundant, has endlessly many configurations for one pose, and colors "
@@ -71,9 +69,9 @@ def load_robot(
 
     Raises:
         InputError: a fault in either URDF (see :mod:`cellcolor.frontend.arm.urdf`), no such tip
-            link, not so many joints of either kind between base and tip, one there that follows
-            another, one elsewhere that moves, a mesh that cannot be found or read, or
-            Pinocchio read other collision shapes than the file has.
+            link, not so many joints of either kind between base and tip, one elsewhere that moves,
+            one that follows it, a mesh that cannot be found or read, or Pinocchio read other
+            collision shapes than the file has.
     """
     arm, tool = (given if isinstance(given, Urdf) else load_urdf(given) for given in (arm, tool))
     positions = fixed_joints or {}
@@ -88,20 +86,16 @@ def load_robot(
         raise InputError(str(tool.file), f"link[{tip_link}]", "the tip link is not in the tool")
     whole = mount(arm, flange_link, tool, *mounted)
     with _naming_file(arm, tool):
-        standing, moving = settled(whole, positions)
+        standing = settled(whole, positions)
         _check_chain(whole, standing, tool, tip_link, (joints - prismatic, prismatic))
         for fault in weight_faults(whole, standing) if force else ():
             raise InputError(None, fault.field, f"{fault.message} ({_NO_FORCE})")
-        all_joints, all_shapes = pinocchio_models(whole, standing)
-        model, geometry = without(all_joints, all_shapes, dict.fromkeys(moving, 0.0))
-        followers, frames = _following(whole, moving, all_joints, model, force)
-        lower, upper = _limits(whole, moving, model)
-    bodies, stand_ins = place_shapes(
-        (arm, tool), whole, all_joints, all_shapes, frames, shapes or Shapes()
-    )
+        model, geometry = pinocchio_models(whole, standing)
+    bodies, stand_ins = place_shapes((arm, tool), whole, model, geometry, shapes or Shapes())
     tip = model.frames[model.getFrameId(tip_link, pin.FrameType.BODY)]
     axes = _axes(model)
     names = tuple(model.names[1:])
+    lower, upper = np.array([limits_of(whole.joints[name]) for name in names]).reshape(-1, 2).T
     slides = np.array([whole.kinds[name] == PRISMATIC for name in names], dtype=bool)
     return Robot(
         files=(arm.file, tool.file),
@@ -124,7 +118,6 @@ def load_robot(
         model=model,
         geometry=geometry,
         stand_ins=stand_ins,
-        followers=followers,
         tool_links=frozenset(tool.shapes),
     )
 
@@ -151,23 +144,16 @@ def _check_chain(
     def refuse(name: str, key: str, message: str) -> InputError:
         return InputError(None, f"joint[{name}]{key}", message)
 
-    for name in in_chain:
-        if name in whole.followers and name not in standing:
-            message = (
-                f"a joint between base and tip may not follow another one (here "
-                f"{whole.followers[name].leader!r}): no family of arms solves that"
-            )
-            raise refuse(name, ".mimic", message)
     kinds = {name: kind for name, kind in whole.leading.items() if name not in standing}
     for name, kind in kinds.items():
         if name in tool.kinds:
-            raise refuse(name, "", f"a tool may not move: {_FIX.format(name)}")
+            raise refuse(name, "", f"a tool may not move: {FIX.format(name)}")
         if name not in in_chain:
-            raise refuse(name, "", f"it moves beside the chain to the tip: {_FIX.format(name)}")
+            raise refuse(name, "", f"it moves beside the chain to the tip: {FIX.format(name)}")
         if kind == PRISMATIC and not wanted[1]:
             message = (
                 "prismatic, in arms of this family only turning joints may move: "
-                f"{_FIX.format(name)}, or name one whose arms have such a joint, as 'scara'"
+                f"{FIX.format(name)}, or name one whose arms have such a joint, as 'scara'"
             )
             raise refuse(name, ".type", message)
     sliding = sum(kind == PRISMATIC for kind in kinds.values())
@@ -202,75 +188,6 @@ def weight_faults(urdf: Urdf, standing: Mapping[str, float]) -> list[InputError]
     return [fault for fault in faults if fault is not None]
 
 
-def _following(
-    urdf: Urdf, moving: Mapping[str, Follower], whole: pin.Model, chain: pin.Model, force: bool
-) -> tuple[tuple[FollowingFrame, ...], list[int]]:
-    """The frames of the followers that move, and the number of each joint's frame.
-
-    Args:
-        urdf, moving: arm and tool as one tree, and those followers.
-        whole: with their joints.
-        chain: without them.
-        force: whether weights count; that of a follower is not known to move.
-    """
-    names, leaders = list(whole.names), list(chain.names)
-    behind = [name for name in names if name in moving]
-    frames = [[*leaders, *behind].index(name) for name in names]
-    axes, found = _axes(whole), []
-    for name in behind:
-        own, joint = moving[name], whole.getJointId(name)
-        if force and whole.inertias[joint].mass > 0:
-            message = f"the weight of what follows another joint is not known to move ({_NO_FORCE})"
-            raise InputError(None, f"joint[{name}].mimic", message)
-        found.append(
-            FollowingFrame(
-                parent=frames[whole.parents[joint]],
-                placement=np.array(whole.jointPlacements[joint].homogeneous),
-                axis=axes[joint - 1],
-                slides=urdf.kinds[name] == PRISMATIC,
-                leader=leaders.index(own.leader) - 1,
-                multiplier=own.multiplier,
-                offset=own.offset,
-            )
-        )
-    return tuple(found), frames
-
-
-def _limits(whole: Urdf, moving: Mapping[str, Follower], chain: pin.Model) -> tuple[Array, Array]:
-    """Limits (joints,) of the chain in which its followers are inside of theirs as well.
-
-    Raises:
-        InputError: there is no position of a leader where its follower is inside, or the leader can
-            turn by more than a circle and the follower is elsewhere after a full one.
-    """
-    names = list(chain.names)[1:]
-    lower, upper = np.array([limits_of(whole.joints[name]) for name in names]).reshape(-1, 2).T
-    for name, own in moving.items():
-        at = names.index(own.leader)
-        ends = ((end - own.offset) / own.multiplier for end in limits_of(whole.joints[name]))
-        low, high = sorted(ends)
-        lower[at], upper[at] = max(lower[at], low), min(upper[at], high)
-        if lower[at] >= upper[at]:
-            message = "is inside its limits nowhere between those of the joint that it follows"
-            raise InputError(None, f"joint[{name}].mimic", message)
-    for name, own in moving.items():
-        at = names.index(own.leader)
-        turns_with = whole.kinds[name] != PRISMATIC and own.multiplier == round(own.multiplier)
-        full = upper[at] - lower[at] > 2 * np.pi + 1e-9
-        if whole.kinds[own.leader] != PRISMATIC and full and not turns_with:
-            message = (
-                f"{own.leader!r} turns by more than a circle, and this joint is elsewhere then: "
-                "give one of them narrower limits"
-            )
-            raise InputError(None, f"joint[{name}].mimic", message)
-    return lower, upper
-
-
-def _is_thing(link: ET.Element) -> bool:
-    """Whether a link is more than a frame."""
-    return any(link.find(tag) is not None for tag in ("inertial", "visual"))
-
-
 def _where_given(limits: Array) -> Array:
     """Limits (joints,), NaN where the file has none; vendors write 0 as well."""
     return np.where(limits > 0, limits, np.nan)
@@ -284,7 +201,8 @@ def _warnings(whole: Urdf, standing: Mapping[str, float]) -> tuple[str, ...]:
     bare = [
         name
         for name, link in whole.links.items()
-        if name not in whole.shapes and (whole.joint_above.get(name) in moving or _is_thing(link))
+        if name not in whole.shapes
+        and (whole.joint_above.get(name) in moving or any(x.tag in _REAL for x in link))
     ]
     if bare:
         return (f"no collision shape, so hits nothing: {', '.join(map(repr, bare))}",)

@@ -20,7 +20,7 @@ import trimesh
 from cellcolor.arrays import Array, Mask
 from cellcolor.data.wording import looks_like_millimeters
 from cellcolor.frontend.arm.body import Body, StandIn
-from cellcolor.frontend.arm.kinematics import Poses, forward
+from cellcolor.frontend.arm.kinematics import Poses, forward, nearest_points
 from cellcolor.frontend.arm.robot import Robot
 
 _NEAR = 1e-3  # m; a tip or a flange so near to where it is seen from shows no direction
@@ -67,13 +67,11 @@ def _outward(model: pin.Model, flange: Array, axes: Array) -> Array | None:
     if len(axes) < 2:
         return None
     last, before = model.jointPlacements[model.njoints - 1].inverse(), axes[-2]
-    u, p = last.rotation @ before, np.array(last.translation)
-    axis, cosine = axes[-1], float(axes[-1] @ u)
-    sine = 1.0 - cosine**2
-    if sine < _NEAR:
+    beside, axis = last.rotation @ before, axes[-1]
+    if 1.0 - float(axis @ beside) ** 2 < _NEAR:
         return None
-    wrist = (p @ axis - cosine * (p @ u)) / sine  # on the axis, nearest to the one before
-    ahead = float(flange @ axis) - wrist
+    wrist = nearest_points(np.zeros(3), axis, np.array(last.translation), beside)[0]
+    ahead = float((flange - wrist) @ axis)
     return None if abs(ahead) < _NEAR else np.asarray(axis * np.sign(ahead))
 
 
@@ -89,7 +87,7 @@ def notes_on_shapes(robot: Robot) -> tuple[str, ...]:
     """
     poses = forward(robot, np.zeros((1, robot.joints)))
     places, length = _axes_of(robot, poses)
-    turn, origin = poses.body_rotation[0], poses.body_origin[0]
+    turn, origin = poses.rotation[0], poses.origin[0]
     middles = [origin[b.joint] + turn[b.joint] @ (b.start + b.end) / 2 for b in robot.bodies]
     far: dict[str, float] = {}
     stray: dict[str, float] = {}
@@ -98,7 +96,7 @@ def notes_on_shapes(robot: Robot) -> tuple[str, ...]:
         size = _size(body)
         if size > length * (1 if body.joint else _HUGE):
             large[body.link] = max(size, large.get(body.link, 0.0))
-        elif 0 < body.joint <= robot.joints:
+        elif body.joint:
             near = places[body.joint - 1 : body.joint + 1]
             off = float(np.linalg.norm(near - middle, axis=1).min()) - size
             gaps = [

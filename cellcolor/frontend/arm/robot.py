@@ -67,33 +67,6 @@ GIVEN_IN_PLANE = TaskSpace(joints=3, turn=True, lengths=2, direction=False)
 
 
 @dataclass(frozen=True)
-class FollowingFrame:
-    """The frame behind a joint that follows one of the chain.
-
-    Attributes:
-        parent: the frame that carries it: 0 is the world, then those behind the joints, then the
-            followers in their order.
-        placement: (4, 4) fixed pose of the follower in that frame.
-        axis: (3,) its unit axis in its own frame.
-        slides: whether it is prismatic; otherwise it turns.
-        leader: the joint of the chain that it follows, 0 the first.
-        multiplier, offset: its position is ``multiplier`` times the leader's plus ``offset``.
-    """
-
-    parent: int
-    placement: Array
-    axis: Array
-    slides: bool
-    leader: int
-    multiplier: float
-    offset: float
-
-    def position(self, configurations: Array) -> Array:
-        """Of the follower in configurations (n, joints) of the chain, (n,) in rad or m."""
-        return np.asarray(self.multiplier * configurations[:, self.leader] + self.offset)
-
-
-@dataclass(frozen=True)
 class Robot:
     """Joints in a row, a tool, and what collides. The world frame is the root link.
 
@@ -114,10 +87,9 @@ class Robot:
         joint_names: names of the joints.
         warnings: what its files have that is probably not meant, a sentence each.
         model, geometry: Pinocchio's own, for those who want to compute independently; meshes and
-            capsules are small spheres there, and followers stand at zero.
+            capsules are small spheres there.
         stand_ins: what collides in the place of meshes.
         tool_links: the links of the tool that have a body.
-        followers: frames beside the chain that move with its joints; bodies hang on them too.
         task: what it is asked to do with the tool; ``load_robot`` leaves the turn free.
     """
 
@@ -140,7 +112,6 @@ class Robot:
     geometry: pin.GeometryModel = field(repr=False, compare=False)
     stand_ins: tuple[StandIn, ...] = ()
     task: TaskSpace = FREE_TURN
-    followers: tuple[FollowingFrame, ...] = ()
     tool_links: frozenset[str] = frozenset()
 
     @property

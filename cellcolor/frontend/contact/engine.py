@@ -79,7 +79,7 @@ class Contacts:
         hit = np.zeros(len(configurations), dtype=bool)
         if not self._pairs or not len(hit):
             return hit
-        positions = np.asfortranarray(self._positions(configurations).T)
+        positions = np.asfortranarray(configurations.T)
         threads = _THREADS if os.getpid() == _OWNER else 1
         hit |= pin.computeCollisionsInParallel(threads, self._pool, positions, True)
         for holder, other in self._filled:
@@ -90,11 +90,6 @@ class Contacts:
     def touching(self, configuration: Array) -> list[Pair]:
         """All pairs that touch in one configuration (joints,)."""
         return [p for p in self._pairs if Contacts([p], self._robot)(configuration[None])[0]]
-
-    def _positions(self, configurations: Array) -> Array:
-        """Of all joints of the model: those of the chain, then those that follow them."""
-        followers = () if self._robot is None else self._robot.followers
-        return np.column_stack([configurations, *(f.position(configurations) for f in followers)])
 
     def _holds(self, holder: Body, other: Body | Shape, configurations: Array) -> Mask:
         """Whether a part of another thing is wholly inside a filled mesh, (n,).
@@ -109,9 +104,9 @@ class Contacts:
         points = shape.points @ shape.rotation.T + shape.origin
         points = np.broadcast_to(points, (len(configurations), *points.shape))
         if isinstance(other, Body):
-            turn, origin = poses.body_rotation[:, other.joint], poses.body_origin[:, other.joint]
+            turn, origin = poses.rotation[:, other.joint], poses.origin[:, other.joint]
             points = points @ turn.swapaxes(1, 2) + origin[:, None]
-        turn, origin = poses.body_rotation[:, holder.joint], poses.body_origin[:, holder.joint]
+        turn, origin = poses.rotation[:, holder.joint], poses.origin[:, holder.joint]
         local = (points - origin[:, None]) @ turn
         near = (local >= mesh.vertices.min(axis=0)) & (local <= mesh.vertices.max(axis=0))
         inside = near.all(axis=2)
@@ -162,18 +157,11 @@ def poses_along(points: Array, directions: Array) -> Array:
 
 
 def _chain(robot: Robot) -> pin.Model:
-    """The joints of an arm without links, and behind them the joints that follow others."""
+    """The joints of an arm without links."""
     model = pin.Model()
-    joints = [
-        (number, robot.slides[number], robot.axis[number], pin.SE3(robot.placement[number]))
-        for number in range(robot.joints)
-    ]
-    for follower in robot.followers:
-        placement = pin.SE3(follower.placement)
-        joints.append((follower.parent, follower.slides, follower.axis, placement))
-    for number, (parent, slides, axis, placement) in enumerate(joints):
+    for number, (slides, axis) in enumerate(zip(robot.slides, robot.axis, strict=True)):
         kind = pin.JointModelPrismaticUnaligned if slides else pin.JointModelRevoluteUnaligned
-        model.addJoint(parent, kind(axis), placement, str(number))
+        model.addJoint(number, kind(axis), pin.SE3(robot.placement[number]), str(number))
     return model
 
 

@@ -57,7 +57,7 @@ def body_ends(robot: Robot, poses: Poses) -> Array:
     """Both ends of every body's axis in the world, (bodies, 2, n, 3), m."""
     ends = np.empty((len(robot.bodies), 2, len(poses.tip), 3))
     for index, body in enumerate(robot.bodies):
-        rotation, origin = poses.body_rotation[:, body.joint], poses.body_origin[:, body.joint]
+        rotation, origin = poses.rotation[:, body.joint], poses.origin[:, body.joint]
         ends[index, 0] = origin + turned(rotation, body.start)
         ends[index, 1] = origin + turned(rotation, body.end)
     return ends
@@ -86,8 +86,8 @@ def tracked_points(robot: Robot, ends: Array, poses: Poses) -> Array:
         if body.solid is None:
             points.append(both)
             continue
-        corners = turned(poses.body_rotation[:, body.joint], body.solid.corners.T)
-        place = corners.transpose(2, 0, 1) + poses.body_origin[:, body.joint]
+        corners = turned(poses.rotation[:, body.joint], body.solid.corners.T)
+        place = corners.transpose(2, 0, 1) + poses.origin[:, body.joint]
         points.append(place)
     return np.concatenate([np.empty((0, *ends.shape[2:])), *points])
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Self
 
+import igl
 import numpy as np
 from pydantic import Field, FiniteFloat, field_validator, model_validator
 
@@ -40,16 +41,16 @@ def whole_mesh(surface: Surface) -> TriangleMesh:
 def thickness(mesh: TriangleMesh) -> float | None:
     """Of a shell, the median distance in m from one side to the other behind it; None of others."""
     size = float(np.linalg.norm(np.ptp(mesh.points, axis=0)))
-    corners, inward = mesh.points[mesh.corners], -np.nan_to_num(mesh.triangle_normals)
-    points, faces = spread(mesh, _POINTS)
-    middles = corners.mean(axis=1)
-    radii = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
+    inward = -np.nan_to_num(mesh.triangle_normals)
+    middles = mesh.points[mesh.corners].mean(axis=1)
+    within = mesh.lengths[mesh.edge_of_side].max(axis=1) + _THIN * size
     behind = np.full(_POINTS, np.inf)
-    for row, (point, face) in enumerate(zip(points, faces.tolist(), strict=True)):
-        near = np.linalg.norm(middles - point, axis=1) <= radii + _THIN * size
+    for row, (point, face) in enumerate(zip(*spread(mesh, _POINTS), strict=True)):
         # What lies behind has its own outside on the other side.
-        rows = np.flatnonzero(near & (inward @ inward[face] < -0.5))
-        behind[row] = _first_hit(point, inward[face], corners[rows])
+        near = np.linalg.norm(middles - point, axis=1) <= within
+        others = mesh.corners[near & (inward @ inward[face] < -0.5)]
+        hits = igl.ray_mesh_intersect(point, inward[face], mesh.points, others)
+        behind[row] = hits[0][1] if hits else np.inf
     found = behind <= _THIN * size
     return float(np.median(behind[found])) if found.mean() >= _MOSTLY else None
 
@@ -63,21 +64,6 @@ def spread(mesh: TriangleMesh, count: int) -> tuple[Array, Index]:
     u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
     weights = np.stack([1 - u - v, u, v], axis=1)
     return np.einsum("ij,ijk->ik", weights, corners[face]), face
-
-
-def _first_hit(point: Array, way: Array, triangles: Array) -> float:
-    """How far it is from a point to the first of triangles (k, 3, 3), m (Moeller, Trumbore)."""
-    a, b, c = triangles.transpose(1, 0, 2)
-    across = np.cross(way, c - a)
-    scale = np.einsum("ij,ij->i", b - a, across)
-    off = point - a
-    with np.errstate(divide="ignore", invalid="ignore"):
-        u = np.einsum("ij,ij->i", off, across) / scale
-        turned = np.cross(off, b - a)
-        v = turned @ way / scale
-        far = np.einsum("ij,ij->i", c - a, turned) / scale
-    inside = (u >= 0) & (v >= 0) & (u + v <= 1) & (far > 0)
-    return float(far[inside].min(initial=np.inf))
 
 
 def between_sharp(mesh: TriangleMesh, sharp_rad: float) -> Index:

@@ -6,8 +6,9 @@ from typing import Annotated, Self
 
 import numpy as np
 from pydantic import Field, FiniteFloat, model_validator
+from scipy.spatial.transform import Rotation
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, unit
 from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.tables import Angles, Position, Table
 
@@ -93,54 +94,19 @@ class Tolerance(Table):
         Directions and axes are opposite in pairs, so that no side is favored. The part's center
         (3,) is in the world, m.
         """
-        return self.drawn(placement, center, np.random.default_rng(_SEED), at_most=False)
-
-    def drawn(
-        self,
-        placement: Placement,
-        center: Array,
-        rng: np.random.Generator,
-        *,
-        count: int | None = None,
-        at_most: bool = True,
-    ) -> list[Placement]:
-        """Placements drawn at random.
-
-        Args:
-            placement: where the part should stand.
-            center: (3,) of the part, in the world, m.
-            count: how many; None for ``samples``.
-            at_most: whether they may be off less than the tolerance allows, evenly within it.
-        """
-        count = self.samples if count is None else count
-        found = []
+        rng, found = np.random.default_rng(_SEED), []
         own = rotation_from_rpy(*placement.rpy_rad)
-        for number in range(count):
-            if number % 2 == 0 or at_most:
-                shift, turn = _direction(rng), _direction(rng)
+        for number in range(self.samples):
+            if number % 2 == 0:
+                shift, axis = (unit(rng.standard_normal(3)) for _ in range(2))
             else:
-                shift, turn = -shift, -turn
-            near, less = (rng.random() ** (1 / 3), rng.random()) if at_most else (1.0, 1.0)
-            rotation = _about(turn, less * self.rotation_rad)
+                shift, axis = -shift, -axis
+            rotation = Rotation.from_rotvec(self.rotation_rad * axis).as_matrix()
             position = rotation @ (np.array(placement.position_m) - center) + center
-            position += near * self.position_m * shift
+            position += self.position_m * shift
             found.append(
                 Placement(
                     position_m=tuple(position.tolist()), rpy_rad=rpy_from_rotation(rotation @ own)
                 )
             )
         return found
-
-
-def _direction(rng: np.random.Generator) -> Array:
-    vector = rng.standard_normal(3)
-    unit: Array = vector / np.linalg.norm(vector)
-    return unit
-
-
-def _about(axis: Array, angle: float) -> Array:
-    """The rotation (3, 3) about a unit axis (Rodrigues)."""
-    x, y, z = axis
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    turned: Array = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
-    return turned

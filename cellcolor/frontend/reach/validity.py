@@ -16,6 +16,7 @@ from cellcolor.frontend.contact.tip import tracked_points, tracked_steps
 from cellcolor.frontend.reach.validity_tests import (
     STANDARD_TESTS,
     Postures,
+    StandardTest,
     ValidityTest,
     Workplace,
 )
@@ -92,7 +93,9 @@ class Judge:
         self.reason_names = tuple(dict.fromkeys([*STANDARD_REASONS, *(t.name for t in added)]))
         on = workplace.setup.constraints
         standard = (test for test in STANDARD_TESTS if getattr(on, test.constraint))
-        self._tests = tuple(test for test in (*standard, *added) if test.name not in left_out)
+        self._tests: tuple[StandardTest | ValidityTest, ...] = tuple(
+            test for test in (*standard, *added) if test.name not in left_out
+        )
         margins = workplace.setup.margins
         least = min(margins.to_object_m, margins.to_obstacles_m, margins.to_ground_m)
         self.tracked_steps = tracked_steps(workplace.robot, least, margins.between_links_m)

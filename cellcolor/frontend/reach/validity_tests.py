@@ -8,7 +8,7 @@ Cheap tests come first; each looks only at what is left.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, Literal
@@ -68,10 +68,10 @@ class Workplace:
         ground = [] if self.ground is None else [self.ground.shape]
         free = [body for body in robot.bodies if body.link not in exempt]
         pairs: dict[str, Sequence[Pair]] = {
-            GroundContact.name: [(body, it, margins.to_ground_m) for it in ground for body in free],
-            SelfCollision.name: pairs_of(robot, margins.between_links_m),
-            ObstacleCollision.name: pairs_with(robot, self.obstacles, margins.to_obstacles_m),
-            ObjectCollision.name: pairs_with(robot, [self.target], margins.to_object_m),
+            "ground": [(body, it, margins.to_ground_m) for it in ground for body in free],
+            "self collision": pairs_of(robot, margins.between_links_m),
+            "obstacle collision": pairs_with(robot, self.obstacles, margins.to_obstacles_m),
+            "object collision": pairs_with(robot, [self.target], margins.to_object_m),
         }
         return {name: Contacts(own, robot) for name, own in pairs.items()}
 
@@ -158,139 +158,108 @@ VALIDITY_TESTS: Registry[ValidityTest] = Registry(
 )
 
 
-class StandardTest(ValidityTest):
-    """One of the tests that a setup can leave out by the constraint that it belongs to.
+@dataclass(frozen=True)
+class StandardTest:
+    """A test that a setup can leave out by the constraint that it belongs to.
 
     Attributes:
-        remedy: what to try where it fails everywhere.
+        name, failed: as of a :class:`ValidityTest`.
         constraint: what it belongs to.
+        remedy: what to try where it fails everywhere.
     """
 
-    remedy: ClassVar[str]
-    constraint: ClassVar[Literal["collision", "force", "conditioning"]]
+    name: str
+    constraint: Literal["collision", "force", "conditioning"]
+    failed: Callable[[Postures], Mask]
+    remedy: str
 
 
-class JointLimits(StandardTest):
-    """The configurations have been turned into the limits where that is possible."""
+def _beyond_limits(postures: Postures) -> Mask:
+    """A joint is beyond its upper limit; only prismatic ones are below the lower.
 
-    name = "joint limits"
-    remedy = "move or turn the part, or check the limits in the URDF"
-    constraint = "collision"
-
-    def failed(self, postures: Postures) -> Mask:
-        """Those with a joint beyond its upper limit; only prismatic ones are below the lower."""
-        robot, joints = postures.workplace.robot, postures.configurations
-        beyond = (joints > robot.upper) | (robot.slides & (joints < robot.lower))
-        return np.asarray(beyond.any(axis=1))
+    The configurations have been turned into the limits where that is possible.
+    """
+    robot, joints = postures.workplace.robot, postures.configurations
+    beyond = (joints > robot.upper) | (robot.slides & (joints < robot.lower))
+    return np.asarray(beyond.any(axis=1))
 
 
-class TipBlocked(StandardTest):
-    """Blocked for all branches of a vertex that have a solution, or for none."""
-
-    name = "tip blocked"
-    remedy = (
-        "move what is in the tool's way, or the part: its surface lies below the ground"
-        " or inside an obstacle"
-    )
-    constraint = "collision"
-
-    def failed(self, postures: Postures) -> Mask:
-        """Those with something in the way of the tool's tip."""
-        return postures.workplace.tip.blocked(postures.tip, postures.tool_axis)
+def _tip_blocked(postures: Postures) -> Mask:
+    """At a vertex this is so for all branches that have a solution, or for none."""
+    return postures.workplace.tip.blocked(postures.tip, postures.tool_axis)
 
 
-class Torque(StandardTest):
-    """Static: what accelerates the arm is not asked."""
-
-    name = "torque"
-    remedy = "lower task.normal_force_n, move the part nearer, or check the efforts in the URDF"
-    constraint = "force"
-
-    def failed(self, postures: Postures) -> Mask:
-        """Those in which a joint is too weak."""
-        robot, task = postures.workplace.robot, postures.workplace.setup.task
-        gravity = np.array(task.gravity_m_per_s2)
-        push = task.normal_force_n
-        torques = static_torques(robot, postures.poses, postures.linear, gravity, push)
-        return np.asarray(np.any(np.abs(torques) > robot.effort, axis=1))
+def _too_weak(postures: Postures) -> Mask:
+    """A joint cannot hold the arm still while the tool presses; what accelerates is not asked."""
+    robot, task = postures.workplace.robot, postures.workplace.setup.task
+    gravity, push = np.array(task.gravity_m_per_s2), task.normal_force_n
+    torques = static_torques(robot, postures.poses, postures.linear, gravity, push)
+    return np.asarray(np.any(np.abs(torques) > robot.effort, axis=1))
 
 
-class Manipulability(StandardTest):
+def _hardly_manipulable(postures: Postures) -> Mask:
     """Near a singularity of the tip's position."""
-
-    name = "manipulability"
-    remedy = (
-        "move the part away from where the arm is stretched out, or lower"
-        " thresholds.min_manipulability"
-    )
-    constraint = "conditioning"
-
-    def failed(self, postures: Postures) -> Mask:
-        """Those below the threshold."""
-        place = postures.workplace
-        measure = manipulability(postures.linear, place.robot.task)
-        return np.asarray(measure < place.arm.conditioning.min_manipulability)
+    place = postures.workplace
+    measure = manipulability(postures.linear, place.robot.task)
+    return np.asarray(measure < place.arm.conditioning.min_manipulability)
 
 
-class TaskDeterminant(StandardTest):
+def _near_singular(postures: Postures) -> Mask:
     """Near a singularity of the task, the aligned wrist included."""
-
-    name = "task determinant"
-    remedy = "move or turn the part, or lower thresholds.min_task_determinant"
-    constraint = "conditioning"
-
-    def failed(self, postures: Postures) -> Mask:
-        """Those below the threshold."""
-        least = postures.workplace.arm.conditioning.min_task_determinant
-        return np.asarray(postures.determinant < least)
+    least = postures.workplace.arm.conditioning.min_task_determinant
+    return np.asarray(postures.determinant < least)
 
 
-class _Contact(StandardTest):
-    """Contacts of the arm and the tool with something; links next to each other may touch."""
+def _contact(name: str, remedy: str) -> StandardTest:
+    """The arm or the tool hits something; links next to each other may touch."""
 
-    constraint = "collision"
+    def hit(postures: Postures) -> Mask:
+        return postures.workplace.contacts[name](postures.configurations)
 
-    def failed(self, postures: Postures) -> Mask:
-        """Those in which something is hit."""
-        return postures.workplace.contacts[self.name](postures.configurations)
-
-
-class GroundContact(_Contact):
-    """The ground is a half space, below a plane that may be tilted."""
-
-    name = "ground"
-    remedy = "lift the part, or name the links that may touch the ground in robot.may_touch_ground"
+    return StandardTest(name, "collision", hit, remedy)
 
 
-class SelfCollision(_Contact):
-    """Two links that overlap."""
-
-    name = "self collision"
-    remedy = "look at the shapes of the links, or name pairs that overlap anyway in robot.may_touch"
-
-
-class ObstacleCollision(_Contact):
-    """All obstacles of the scene, one after the other."""
-
-    name = "obstacle collision"
-    remedy = "move the part or the obstacles farther apart"
-
-
-class ObjectCollision(_Contact):
-    """The tool's body ends before the tip, so the tip alone may touch the object."""
-
-    name = "object collision"
-    remedy = "use a longer or thinner tool, or turn the part"
-
-
-STANDARD_TESTS: tuple[StandardTest, ...] = (
-    JointLimits(),
-    TipBlocked(),
-    Torque(),
-    Manipulability(),
-    TaskDeterminant(),
-    GroundContact(),
-    SelfCollision(),
-    ObstacleCollision(),
-    ObjectCollision(),
+STANDARD_TESTS = (
+    StandardTest(
+        "joint limits",
+        "collision",
+        _beyond_limits,
+        "move or turn the part, or check the limits in the URDF",
+    ),
+    StandardTest(
+        "tip blocked",
+        "collision",
+        _tip_blocked,
+        "move what is in the tool's way, or the part: its surface lies below the ground"
+        " or inside an obstacle",
+    ),
+    StandardTest(
+        "torque",
+        "force",
+        _too_weak,
+        "lower task.normal_force_n, move the part nearer, or check the efforts in the URDF",
+    ),
+    StandardTest(
+        "manipulability",
+        "conditioning",
+        _hardly_manipulable,
+        "move the part away from where the arm is stretched out, or lower"
+        " thresholds.min_manipulability",
+    ),
+    StandardTest(
+        "task determinant",
+        "conditioning",
+        _near_singular,
+        "move or turn the part, or lower thresholds.min_task_determinant",
+    ),
+    _contact(
+        "ground",
+        "lift the part, or name the links that may touch the ground in robot.may_touch_ground",
+    ),
+    _contact(
+        "self collision",
+        "look at the shapes of the links, or name pairs that overlap anyway in robot.may_touch",
+    ),
+    _contact("obstacle collision", "move the part or the obstacles farther apart"),
+    _contact("object collision", "use a longer or thinner tool, or turn the part"),
 )

@@ -6,14 +6,12 @@ from collections import defaultdict
 
 import numpy as np
 
-from cellcolor.data.bound_kinds import kind_of
-from cellcolor.data.bounds import Bound
+from cellcolor.data.bounds import Bound, kind_of
 from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count, listed
 from cellcolor.pictures.report_page.content import Answers, Card, MotionReport
-from cellcolor.questions.explanation import Explanation
-from cellcolor.questions.front import Front
+from cellcolor.questions.answers import Explanation, Front
 from cellcolor.questions.placements import Placements
 from cellcolor.questions.set_ups import SetUpPlan
 
@@ -24,8 +22,9 @@ def cards_of(report: MotionReport) -> tuple[Card, ...]:
     """All of them, those with nothing to tell left out."""
     cards = (
         _verdict(report),
-        _warnings(report),
-        _lacking(report),
+        # Likely mistakes in the scene, and what its numbers depend on.
+        _lines("Warnings", report.built.report.warnings, None),
+        _lines("What is not there", report.lacking, False),
         _proof(report),
         _feed(report),
         _coverage(report),
@@ -102,15 +101,8 @@ def _verdict(report: MotionReport) -> Card:
     return Card(title, tuple(texts), tuple(rows), False, times=times)
 
 
-def _warnings(report: MotionReport) -> Card | None:
-    """Likely mistakes in the scene, and what its numbers depend on."""
-    found = report.built.report.warnings
-    return Card("Warnings", found, (), None) if found else None
-
-
-def _lacking(report: MotionReport) -> Card | None:
-    """What was asked for, or is usual, and is not there."""
-    return Card("What is not there", report.lacking, (), False) if report.lacking else None
+def _lines(title: str, lines: tuple[str, ...], good: bool | None) -> Card | None:
+    return Card(title, lines, (), good) if lines else None
 
 
 def _feed(report: MotionReport) -> Card | None:

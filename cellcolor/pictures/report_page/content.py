@@ -12,8 +12,7 @@ from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.decomposition import Decomposition
 from cellcolor.frontend import BuildResult
 from cellcolor.painting.paint import Painted
-from cellcolor.questions.explanation import Explanation
-from cellcolor.questions.front import Front
+from cellcolor.questions.answers import Explanation, Front
 from cellcolor.questions.placements import Placements
 from cellcolor.questions.set_ups import SetUpPlan
 

@@ -18,25 +18,16 @@ function unpack({ kind, base64 }) {
 
 const matrix = (rows) => new THREE.Matrix4().set(...rows);
 
-// The poses of the world and of the frames behind all joints and followers, and the tool's tip last.
+// The poses of the world and of the frames behind all joints, and the tool's tip last.
 function armPoses(arm, joints) {
-  const moved = (axis, slides, position) => {
-    const along = new THREE.Vector3(...axis), motion = new THREE.Matrix4();
-    return slides
-      ? motion.makeTranslation(along.multiplyScalar(position))
-      : motion.makeRotationAxis(along, position);
-  };
   const poses = [new THREE.Matrix4()];
   arm.axis.forEach((axis, joint) => {
-    const own = moved(axis, arm.slides[joint], joints[joint]);
+    const along = new THREE.Vector3(...axis), own = new THREE.Matrix4();
+    if (arm.slides[joint]) own.makeTranslation(along.multiplyScalar(joints[joint]));
+    else own.makeRotationAxis(along, joints[joint]);
     poses.push(poses[joint].clone().multiply(matrix(arm.placement[joint])).multiply(own));
   });
-  const tip = poses.at(-1).clone().multiply(matrix(arm.tip));
-  for (const { parent, placement, axis, slides, leader, multiplier, offset } of arm.followers) {
-    const own = moved(axis, slides, multiplier * joints[leader] + offset);
-    poses.push(poses[parent].clone().multiply(matrix(placement)).multiply(own));
-  }
-  return [...poses, tip];
+  return [...poses, poses.at(-1).clone().multiply(matrix(arm.tip))];
 }
 
 // Triangles by themselves, with normals that are smooth but across sharp edges.

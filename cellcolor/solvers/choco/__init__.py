@@ -1,5 +1,5 @@
 """Choco, a constraint solver with lazy clause generation, on a model of the whole problem.
 
-It searches the space ``paper``, in cells with one live loop. ``problem`` is what is given,
-``model`` how it is written, and ``solver`` runs it.
+It searches the space ``paper``, in cells with one live loop. ``model`` has what is given and how it
+is written, and ``solver`` runs it.
 """

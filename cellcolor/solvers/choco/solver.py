@@ -23,8 +23,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import CellcolorError, SolverMissing
 from cellcolor.processes import Child
 from cellcolor.solvers.bounds.cover import color_regions, greedy_independent_set
-from cellcolor.solvers.choco.model import Ranks
-from cellcolor.solvers.choco.problem import Problem
+from cellcolor.solvers.choco.model import Problem, Ranks
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains
 

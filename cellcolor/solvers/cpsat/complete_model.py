@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from importlib.metadata import version
+from collections.abc import Collection, Sequence
+from dataclasses import replace
 from math import ceil, isfinite
 
+import ortools
 from ortools.sat.python import cp_model
 
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
+from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds.cover import color_regions
-from cellcolor.solvers.bounds.crossings import enough_crossings
-from cellcolor.solvers.cpsat.dart_graph import complete_graph, dart_graph
+from cellcolor.solvers.cpsat.dart_graph import complete_graph, dart_graph, enough_crossings
 from cellcolor.solvers.cpsat.formulation import SectorModel
 from cellcolor.solvers.cpsat.painting import (
     Block,
@@ -23,8 +24,8 @@ from cellcolor.solvers.cpsat.painting import (
     moved,
     painting_of,
 )
-from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
+from cellcolor.solvers.interruptible import Runner
 
 MOST_LITERALS = 1_000_000
 """The most for the colors of sectors, of which 100,000 take 10 seconds and half a gigabyte to
@@ -35,19 +36,13 @@ class CompleteModel(SectorModel):
     """The formulation of a whole instance.
 
     Args:
-        instance: the instance.
         strands: of each live edge; 1 in the search space ``paper``.
         groups: the redundant groups of constraints; None for all of them.
         deadline: of building it.
 
-    Attributes:
-        instance: the instance.
-        strands: of each live edge.
-
     Raises:
         InputError: there is no such group.
         TooLarge: there are too many sectors, or strands of seams.
-        OutOfTime: the deadline came first.
     """
 
     def __init__(
@@ -73,9 +68,8 @@ class CompleteModel(SectorModel):
     def read(self, solver: cp_model.CpSolver) -> tuple[Division, tuple[Seam, ...]]:
         """The division that a solver has found, and the seams that its darts refer to."""
         graph = self.sectors.graph
-        return division_of(
-            graph, canonical(graph, self.painting(solver)), self.strands
-        ), graph.seams
+        painting = canonical(graph, self.painting(solver))
+        return division_of(graph, painting, self.strands), graph.seams
 
     def _whole(self) -> list[list[Block]]:
         """Every cell painted whole, each in the color of its largest color region."""
@@ -92,10 +86,7 @@ class CompleteModelSolver:
 
     abilities = Abilities(search_spaces=("paper", "surface"), several_loops=True)
 
-    @property
-    def version(self) -> str:
-        """The version of OR-Tools."""
-        return f"OR-Tools {version('ortools')}"
+    version = f"OR-Tools {ortools.__version__}"
 
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
@@ -108,11 +99,9 @@ class CompleteModelSolver:
         except OutOfTime:
             return Answer(None, (), ())
         runner = Runner(options)
-        solver = runner.portfolio(options.deadline)
-        found: list[int] = []
+        solver = runner.portfolio()
 
         def watch(segments: int) -> None:
-            found.append(segments)
             if progress is not None:
                 progress(segments, 0)
 
@@ -128,3 +117,58 @@ class CompleteModelSolver:
                 bounds.append(Bound("crossings", bound, "surface"))
             bounds.append(Bound("model", bound, "strands"))
         return Answer(division, seams, tuple(bounds), (), built.size)
+
+
+def least_left_out(
+    instance: Instance,
+    weights: Sequence[int],
+    segments: int,
+    options: Options,
+) -> tuple[frozenset[int], int] | None:
+    """The cells left out when a number of segments covers the most, in the search space ``paper``.
+
+    A cell that a segment enters can be covered whole without another segment: uncovered pieces of
+    it go, one by one, to a segment beside them in the same cell. So only whole cells are left out.
+    In the model such a cell has a color of its own, which is joinable nowhere, and its root is not
+    counted.
+
+    Args:
+        weights: of each cell, 0 or more.
+        segments: the most that there may be.
+        options: deadline, workers and seed.
+
+    Returns:
+        The cells left out of the best division found, and the weight that no division covers more
+        of. None if nothing was found in time, or the model is too large.
+    """
+    nothing = len(instance.colors)
+    try:
+        built = CompleteModel(_with_color(instance), deadline=options.deadline)
+    except TooLarge:
+        return None
+    model, roots = built.model, built.variables.root
+    left_out = {
+        built.sectors.cell[sector]: literal
+        for (sector, color), literal in roots.items()
+        if color == nothing
+    }
+    model.add(built.segments - sum(left_out.values()) <= segments)
+    model.minimize(sum(weights[cell] * literal for cell, literal in left_out.items()))
+    runner = Runner(options)
+    solver = runner.portfolio()
+    status = runner.solve(solver, model)
+    if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+        return None
+    found = [cell for cell, literal in left_out.items() if solver.boolean_value(literal)]
+    return frozenset(found), sum(weights) - ceil(solver.best_objective_bound - 1e-6)
+
+
+def _with_color(instance: Instance) -> Instance:
+    """The instance with one more color, which all cells have, and no edge joins."""
+    nothing = len(instance.colors)
+    return replace(
+        instance,
+        colors=(*instance.colors, "-".join(("nothing", *instance.colors))),  # no other name
+        cells=tuple(replace(cell, colors=(*cell.colors, nothing)) for cell in instance.cells),
+        edges=tuple(replace(e, colors=instance.joinable(e.id)) for e in instance.edges),
+    )

@@ -20,11 +20,7 @@ if TYPE_CHECKING:
 
 
 def add_variables(m: SectorModel, *, only_centers: bool) -> None:
-    """The variables.
-
-    Args:
-        only_centers: whether only centers of cells can be roots.
-    """
+    """The variables; ``only_centers`` says whether only centers of cells can be roots."""
     model, v, sectors = m.model, m.variables, m.sectors
     size = [sum(len(sectors.nodes[cell]) for cell in cells) for _, cells in m.regions]
     for sector, cell in enumerate(m.deadline.watch(sectors.cell)):

@@ -8,6 +8,7 @@ code. This is on purpose: the others reveal a mistake made in only one of the th
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -28,7 +29,6 @@ class Dart(NamedTuple):
 
     Attributes:
         name: the signed edge or seam, and the strand.
-        cell: the cell whose border it is on.
         twin: index of the other side in ``DartGraph.darts``.
         colors: the colors joinable across it.
     """
@@ -44,11 +44,10 @@ class DartGraph:
     """The live darts with their order around each cell, which is all that a model is built from.
 
     Attributes:
-        darts: all live darts.
         loops: each cell's darts as indices, loop by loop, in cyclic order with the cell on the
             left. Seams make one loop of all live loops of a cell; without seams they are apart.
-        colors: each cell's colors.
-        seams: the seams whose darts are among them.
+        colors: of each cell.
+        seams: those whose darts are among the darts.
     """
 
     darts: tuple[Dart, ...]
@@ -73,7 +72,7 @@ def dart_graph(
     """Put strands and seams into the instance's loops and leave out what is dead.
 
     Args:
-        strands: strands of each live edge.
+        strands: of each live edge.
         seams: one for each further loop of a cell, all from the cell's first loop; None leaves the
             loops apart.
     """
@@ -111,8 +110,8 @@ def widened(
     They have as many strands as leave the cell's minimum unchanged (semantics, section 5).
 
     Args:
-        strands: strands of each live edge.
-        most: no seam gets more strands than this.
+        strands: of each live edge.
+        most: of each seam.
 
     Raises:
         TooLarge: the seams would need too many strands.
@@ -134,11 +133,7 @@ def with_strands(seams: Iterable[Seam], widths: Iterable[int]) -> tuple[Seam, ..
 
 
 def complete_graph(instance: Instance, strands: Mapping[int, int]) -> DartGraph:
-    """The graph in which every scheme can be drawn: with seams as wide as needed.
-
-    Raises:
-        TooLarge: they would need too many strands.
-    """
+    """The graph in which every scheme can be drawn: with seams as :func:`widened`."""
     return dart_graph(instance, strands, widened(instance, strands))
 
 
@@ -156,11 +151,11 @@ def seam_places(instance: Instance) -> tuple[Seam, ...]:
 def split(instance: Instance) -> list[tuple[Instance, list[int]]]:
     """The parts of an instance that live edges connect, the smallest first.
 
-    Segments never reach from one into another, so their minima and bounds add up.
+    Segments never reach from one into another, so minima and bounds add up.
 
     Returns:
-        For each part its cells, renumbered in their order, with their live edges under their own
-        ids; and the number that each of these cells has in the whole.
+        Each part with its cells renumbered in their order, and its live edges under their own ids;
+        and the number that each of these cells has in the whole.
     """
     connected = UnionFind(range(len(instance.cells)))
     for edge in instance.live_edges:
@@ -169,10 +164,10 @@ def split(instance: Instance) -> list[tuple[Instance, list[int]]]:
     parts = []
     for cells in sorted(map(sorted, connected.sets()), key=len):
         number = {cell: place for place, cell in enumerate(cells)}
-        own = [instance.edge(dart) for c in cells for loop in loops[c] for dart in loop if dart > 0]
+        own = sorted(dart for c in cells for loop in loops[c] for dart in loop if dart > 0)
         edges = tuple(
             Edge(e.id, number[e.left], number[e.right], instance.joinable(e.id))
-            for e in sorted(own, key=lambda edge: edge.id)
+            for e in map(instance.edge, own)
         )
         within = tuple(
             Cell(place, instance.cells[cell].colors, tuple(loops[cell]))
@@ -197,3 +192,32 @@ def _walk(loops: Sequence[tuple[int, ...]], seams: Sequence[int]) -> list[int]:
         # and arrives after the first dart of the other.
         rest = [seam, *loop[1:], loop[0], -seam, *rest]
     return [first, *rest]
+
+
+def enough_crossings(instance: Instance) -> dict[int, float]:
+    """How many strands of each live edge suffice for a minimum over all divisions, or infinity.
+
+    An edge with a single joinable color is crossed at most once, any other at most as often as the
+    other edges of the cell on either side together (docs/bounds.md). This is applied until nothing
+    changes. It says nothing about a cell with several live loops, nor about edges with the same
+    cell on both sides.
+    """
+    enough = {
+        edge: math.inf if len(instance.joinable(edge)) > 1 else 1 for edge in instance.live_edges
+    }
+    borders = [
+        [abs(dart) for dart in loops[0]] if len(loops) == 1 else [] for loops in instance.live_loops
+    ]
+    changed = True
+    while changed:
+        changed = False
+        for edge in instance.edges:
+            known = enough.get(edge.id, 1)
+            if known == 1 or edge.left == edge.right:
+                continue
+            for border in (borders[edge.left], borders[edge.right]):
+                others = sum(enough[other] for other in border if other != edge.id)
+                if border and max(1, others) < enough[edge.id]:
+                    enough[edge.id] = max(1, others)
+                    changed = True
+    return enough

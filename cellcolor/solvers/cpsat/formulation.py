@@ -18,16 +18,15 @@ from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, add_variables
 from cellcolor.solvers.cpsat.dart_graph import DartGraph
-from cellcolor.solvers.cpsat.drawing import sector_colors
 from cellcolor.solvers.cpsat.painting import Painting
-from cellcolor.solvers.cpsat.sectors import painting_of_sectors, sector_graph
+from cellcolor.solvers.cpsat.sectors import painting_of_sectors, sector_colors, sector_graph
 
 Pair = tuple[int, int]
 
 
 @dataclass(frozen=True)
 class Variables:
-    """The variables of a model, by sector, color and link of the sector graph.
+    """The variables of a model.
 
     Attributes:
         color: per sector and color: the sector has that color.
@@ -46,26 +45,19 @@ class SectorModel:
     """The model on the sector graph of some cells.
 
     Args:
-        graph: the darts of the cells.
         regions: the color regions of the cells.
         most_literals: for the colors of sectors; a larger model is not built.
         groups: the names of the ``REDUNDANT`` groups of constraints; None for all of them.
         deadline: of building it.
 
     Attributes:
-        model: the model; it minimizes the number of segments.
-        variables: its variables.
-        sectors: the sector graph.
-        regions: the color regions.
-        segments: the objective.
-        deadline: of building it.
+        model: minimizes ``segments``.
         fewest_regions: the size of a smallest cover, where the group ``cover`` is there; else 0.
         fixed_root: for each region with a one-colored cell, the cell that has its segment's root.
 
     Raises:
         InputError: there is no such group.
         TooLarge: there are too many sectors.
-        OutOfTime: the deadline came first.
     """
 
     def __init__(
@@ -129,7 +121,6 @@ class SectorModel:
         """The parent of each sector that is no root, and the rank of each."""
         sectors = self.sectors
         fixed = {(cell, self.regions[number][0]) for number, cell in self.fixed_root.items()}
-
         whole = [len({colors[node] for node in nodes}) == 1 for nodes in sectors.nodes]
 
         def order(sector: int) -> tuple[bool, bool, int]:

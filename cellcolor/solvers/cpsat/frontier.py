@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from cellcolor.deadline import Deadline
 from cellcolor.errors import TooLarge
+from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.cell_divisions import ZERO, Blocks, divisions
 from cellcolor.solvers.cpsat.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block, Painting
@@ -59,7 +60,6 @@ class Frontier:
 
     Args:
         graph: the dart graph, loops apart.
-        regions: color and cells of each color region.
         segments: of the schemes, the fewest there are.
         can_be_drawn: whether the blocks of a cell with several loops do not cross.
         given: the division of cells that need not vary; all are from one scheme.
@@ -74,7 +74,7 @@ class Frontier:
     def __init__(
         self,
         graph: DartGraph,
-        regions: Sequence[tuple[int, frozenset[int]]],
+        regions: Sequence[Region],
         segments: int,
         can_be_drawn: Callable[[int, Sequence[Block]], bool],
         deadline: Deadline,

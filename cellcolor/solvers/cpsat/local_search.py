@@ -19,11 +19,16 @@ from heapq import heappop, heappush
 from random import Random
 
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.dart_graph import DartGraph
-from cellcolor.solvers.cpsat.drawing import sector_colors
 from cellcolor.solvers.cpsat.painted_sectors import PaintedSectors
 from cellcolor.solvers.cpsat.painting import Painting, canonical, segments_of
-from cellcolor.solvers.cpsat.sectors import SectorGraph, painting_of_sectors, sector_graph
+from cellcolor.solvers.cpsat.sectors import (
+    SectorGraph,
+    painting_of_sectors,
+    sector_colors,
+    sector_graph,
+)
 
 ONE_MORE = 0.0013
 """The chance that a move is kept although it leaves one segment more."""
@@ -57,7 +62,7 @@ class Recoloring:
     """A division of a sector graph, changed node by node.
 
     Args:
-        graph: the sector graph.
+        regions: the color regions of the cells.
         colors: of each node.
         rng: chooses the moves.
         deadline: of getting ready, which takes time by the size of the graph.
@@ -67,11 +72,16 @@ class Recoloring:
     """
 
     def __init__(
-        self, graph: SectorGraph, colors: Sequence[int], rng: Random, deadline: Deadline = NEVER
+        self,
+        graph: SectorGraph,
+        regions: Sequence[Region],
+        colors: Sequence[int],
+        rng: Random,
+        deadline: Deadline = NEVER,
     ) -> None:
         self._graph = graph
         self._chance = rng
-        self._painted = PaintedSectors(graph, colors, deadline)
+        self._painted = PaintedSectors(graph, regions, colors, deadline)
         # What changing a node costs besides 1, in units of the rise, which grows with each move.
         self._price = [0.0] * len(colors)
         self._rise = 1.0
@@ -269,6 +279,7 @@ class Recoloring:
 
 def recolor(
     graph: DartGraph,
+    regions: Sequence[Region],
     painting: Painting,
     rng: Random,
     enough: int,
@@ -280,14 +291,13 @@ def recolor(
 
     Args:
         painting: a canonical painting of it.
-        rng: chooses the moves.
         enough: segments that are few enough.
         moves: for each segment, before nothing better is expected.
         rings: of sectors in a cell. One leaves room enough in most cells. With none, each cell is
             painted whole, which makes a move several times quicker.
     """
     sectors = sector_graph(graph, rings)
-    search = Recoloring(sectors, sector_colors(sectors, painting), rng, deadline)
+    search = Recoloring(sectors, regions, sector_colors(sectors, painting), rng, deadline)
     fewest = len(segments_of(graph, painting))
     in_vain = 0
     while True:

@@ -8,10 +8,10 @@ from random import Random
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, scheme_key
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.errors import InputError, TooLarge
+from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds.cover import color_regions
-from cellcolor.solvers.cpsat.cell_divisions import Blocks
-from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph
+from cellcolor.solvers.cpsat.cell_divisions import Blocks, Planarity
+from cellcolor.solvers.cpsat.dart_graph import dart_graph
 from cellcolor.solvers.cpsat.frontier import Frontier
 from cellcolor.solvers.cpsat.painting import (
     Painting,
@@ -20,7 +20,6 @@ from cellcolor.solvers.cpsat.painting import (
     moved,
     painting_of,
 )
-from cellcolor.solvers.cpsat.planarity import Planarity
 from cellcolor.solvers.interface import Options
 
 _COUNTING = 1 / 2
@@ -46,15 +45,10 @@ class OptimalSchemes(Iterator[Division]):
         count: how many there are; None as long as that is not known.
 
     Raises:
-        InputError: the search space is ``surface``, for which schemes are not defined.
-        OutOfTime: the deadline came first.
         TooLarge: there are too many fronts, or cells with too many darts.
     """
 
     def __init__(self, instance: Instance, options: Options, segments: int) -> None:
-        if options.search_space != "paper":
-            message = "schemes are defined in search space 'paper' only"
-            raise InputError(None, "search_space", message)
         self.count: int | None = None
         self._instance, self._options, self._segments = instance, options, segments
         once = dict.fromkeys((edge.id for edge in instance.edges), 1)
@@ -108,7 +102,10 @@ class OptimalSchemes(Iterator[Division]):
         rng, known, seen = Random(self._options.seed), [start], {scheme_key(first)}
         if self._instance.most_live_loops < 2:
             yield first
-        around = _around(self._graph)
+        around = [
+            sorted({self._graph.darts[self._graph.darts[dart].twin].cell for dart in own})
+            for own in self._graph.lists
+        ]
         size, in_vain = 2, 0
         while in_vain < _IN_VAIN:
             free = _patch(around, size, rng)
@@ -134,13 +131,6 @@ class OptimalSchemes(Iterator[Division]):
                     raise
                 self._options.deadline.check()
                 size = max(size - 2, 1)
-
-
-def _around(graph: DartGraph) -> list[list[int]]:
-    """The neighbors of each cell."""
-    return [
-        sorted({graph.darts[graph.darts[dart].twin].cell for dart in own}) for own in graph.lists
-    ]
 
 
 def _patch(around: Sequence[Sequence[int]], size: int, rng: Random) -> set[int]:

@@ -10,6 +10,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from cellcolor.deadline import Deadline
+from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.sectors import SectorGraph
 
 
@@ -20,9 +21,8 @@ class PaintedSectors:
     for a segment elsewhere.
 
     Args:
-        graph: the sector graph.
         colors: of each node.
-        deadline: when to stop, as this takes time by the size of the graph.
+        regions: the color regions of the cells.
 
     Attributes:
         near: of each region its nodes, with their neighbors in it.
@@ -35,12 +35,46 @@ class PaintedSectors:
         count: of each region, how many segments it has.
     """
 
-    def __init__(self, graph: SectorGraph, colors: Sequence[int], deadline: Deadline) -> None:
-        self.graph = graph
-        self._find_regions(deadline)
+    def __init__(
+        self,
+        graph: SectorGraph,
+        regions: Sequence[Region],
+        colors: Sequence[int],
+        deadline: Deadline,
+    ) -> None:
+        self._color = [color for color, _ in regions]
+        number = {(color, cell): n for n, (color, cells) in enumerate(regions) for cell in cells}
+        self.near: list[dict[int, list[int]]] = [
+            {
+                node: [
+                    *graph.beside[node],
+                    *(other for other, joinable in graph.across[node] if color in joinable),
+                ]
+                for cell in sorted(cells)
+                for node in graph.nodes[cell]
+            }
+            for color, cells in deadline.watch(regions)
+        ]
+        within = [
+            frozenset(number[color, cell] for color in own)
+            for cell, own in enumerate(graph.graph.colors)
+        ]
+        self.choices = [sorted(own) for own in within]
+        self.around = [
+            [
+                *((other, within[cell]) for other in beside),
+                *(
+                    (other, frozenset(number[color, cell] for color in joinable))
+                    for other, joinable in across
+                ),
+            ]
+            for cell, beside, across in deadline.watch(
+                zip(graph.cell, graph.beside, graph.across, strict=True)
+            )
+        ]
+        self.fixed = {node for node, cell in enumerate(graph.cell) if len(self.choices[cell]) == 1}
         self._named = 0
-        pairs = zip(colors, graph.cell, strict=True)
-        self.paint_all(self._number[color, cell] for color, cell in pairs)
+        self.paint_all(number[pair] for pair in zip(colors, graph.cell, strict=True))
 
     def colors(self, region: Iterable[int]) -> list[int]:
         """The colors of regions."""
@@ -150,61 +184,3 @@ class PaintedSectors:
                         found[flood] += found[met]
                         rising[flood] += rising[met]
                         del left[met]
-
-    def _find_regions(self, deadline: Deadline) -> None:
-        """Number the color regions: a node's region says its color, and where it can spread to."""
-        graph = self.graph
-        self._color: list[int] = []
-        self.near: list[dict[int, list[int]]] = []
-        self._number: dict[tuple[int, int], int] = {}
-        for color in sorted({color for colors in graph.graph.colors for color in colors}):
-            near = _near(graph, color)
-            for first in deadline.watch(near):
-                if (color, graph.cell[first]) in self._number:
-                    continue
-                own: dict[int, list[int]] = {first: near[first]}
-                for node in (reached := [first]):
-                    self._number[color, graph.cell[node]] = len(self.near)
-                    for other in near[node]:
-                        if other not in own:
-                            own[other] = near[other]
-                            reached.append(other)
-                self._color.append(color)
-                self.near.append(own)
-        shared: dict[tuple[int, frozenset[int]], frozenset[int]] = {}
-
-        def regions(cell: int, colors: frozenset[int]) -> frozenset[int]:
-            key = cell, colors
-            if key not in shared:
-                shared[key] = frozenset(self._number[color, cell] for color in colors)
-            return shared[key]
-
-        self.choices = [
-            sorted(regions(cell, colors)) for cell, colors in enumerate(graph.graph.colors)
-        ]
-        self.around = [
-            [
-                *((other, regions(cell, graph.graph.colors[cell])) for other in beside),
-                *((other, regions(cell, colors)) for other, colors in across),
-            ]
-            for cell, beside, across in deadline.watch(
-                zip(graph.cell, graph.beside, graph.across, strict=True)
-            )
-        ]
-        self.fixed = {node for node, cell in enumerate(graph.cell) if len(self.choices[cell]) == 1}
-
-
-def _near(graph: SectorGraph, color: int) -> dict[int, list[int]]:
-    """The neighbors that can have a color, of each sector that can; those of its cell come first.
-
-    They never lead out of a color region.
-    """
-    return {
-        node: [
-            *graph.beside[node],
-            *(other for other, joinable in graph.across[node] if color in joinable),
-        ]
-        for cell, nodes in enumerate(graph.nodes)
-        if color in graph.graph.colors[cell]
-        for node in nodes
-    }

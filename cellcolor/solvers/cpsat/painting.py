@@ -6,8 +6,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from cellcolor.data.cells_and_edges import DartName, strand_of
-from cellcolor.data.solution import Division, number_segments
-from cellcolor.solvers.cpsat.dart_graph import DartGraph
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Division, Seam, number_segments
+from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph
 from cellcolor.union_find import UnionFind
 
 
@@ -54,8 +55,7 @@ def painting_of(graph: DartGraph, division: Division) -> Painting:
 def moved(known: DartGraph, painting: Painting, target: DartGraph) -> Painting:
     """A painting on another graph of the same cells.
 
-    Strands that the target does not know are cut; the two sides of a seam's strand are one sub-cell
-    then.
+    Strands that the target lacks are cut; the two sides of a seam's strand are one sub-cell then.
     """
     seams = {seam.id for seam in known.seams}
     found: Painting = []
@@ -77,25 +77,12 @@ def moved(known: DartGraph, painting: Painting, target: DartGraph) -> Painting:
 
 def segments_of(graph: DartGraph, painting: Painting) -> list[set[int]]:
     """The cells that each segment touches."""
-    blocks = [block for cell in painting for block in cell]
-    cell_of = [number for number, cell in enumerate(painting) for _ in cell]
-    holder = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
-    reached = [-1] * len(blocks)
-    segments: list[set[int]] = []
-    for first in range(len(blocks)):
-        if reached[first] >= 0:
-            continue
-        reached[first] = len(segments)
-        segments.append({cell_of[first]})
-        stack = [first]
-        while stack:
-            for dart in blocks[stack.pop()].darts:
-                other = holder[graph.darts[dart].twin]
-                if reached[other] < 0:
-                    reached[other] = reached[first]
-                    segments[-1].add(cell_of[other])
-                    stack.append(other)
-    return segments
+    blocks = [(cell, block) for cell, own in enumerate(painting) for block in own]
+    holder = {dart: number for number, (_, block) in enumerate(blocks) for dart in block.darts}
+    together = UnionFind(range(len(blocks)))
+    for dart, number in holder.items():
+        together.union(number, holder[graph.darts[dart].twin])
+    return [{blocks[number][0] for number in own} for own in together.sets()]
 
 
 def canonical(graph: DartGraph, painting: Painting) -> Painting:
@@ -114,8 +101,7 @@ def canonical(graph: DartGraph, painting: Painting) -> Painting:
     a join and a sub-cell, so the process ends. On a graph without seams there are no more cutting
     paths than before either (docs/semantics.md, section 8).
 
-    Args:
-        painting: what is legal on it; its own blocks are changed.
+    The blocks of the painting are changed.
     """
     cells = [_Cell(*own) for own in zip(graph.loops, painting, strict=True)]
     waiting = dict.fromkeys(reversed(range(len(cells))))
@@ -149,11 +135,8 @@ class _Cell:
 
     def __init__(self, loops: Sequence[Sequence[int]], blocks: Sequence[Block]) -> None:
         self._loops = loops
-        self.block_of: dict[int, Block] = {}
+        self.block_of = {dart: block for block in blocks for dart in block.darts}
         self.own = blocks[0]
-        for block in blocks:
-            for dart in block.darts:
-                self.block_of[dart] = block
         self._shown: dict[int, Block] | None = None
 
     def shown(self, dart: int) -> Block:
@@ -227,3 +210,21 @@ class _Cell:
         darts = (dart for loop in self._loops for dart in loop)
         found = {id(b): b for dart in darts if (b := self.block_of.get(dart)) is not None}
         return list(found.values()) or [self.own]
+
+
+def joined(
+    instance: Instance, division: Division, seams: Sequence[Seam] = (), strands: int = 1
+) -> Division:
+    """The scheme of a division: edges between equal joinable colors are joined.
+
+    A division in which some edge in state 0 has to show one joinable color on both sides is refused
+    by the checker (docs/semantics.md, section 3, rule 5). Joining these edges repairs it. Sub-cells
+    of equal color without anything between them become one, and what is superfluous goes; there
+    are no more segments than before (section 8).
+
+    Args:
+        division: legal otherwise; cells may be painted whole, without any joined edge.
+        strands: for each live edge.
+    """
+    graph = dart_graph(instance, dict.fromkeys(instance.live_edges, strands), seams)
+    return division_of(graph, canonical(graph, painting_of(graph, division)), strands)

@@ -6,27 +6,34 @@ when that comes first; what it has found by then is kept.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
+from itertools import combinations, product
 from math import ceil, isfinite
 from random import Random
 
 from ortools.sat.python import cp_model
 
+from cellcolor.data.bounds import CertifiedCrossing, CertifiedPart, CertifiedParts
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import ModelSize
 from cellcolor.deadline import Deadline
 from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds.cover import Region, color_regions, greedy_independent_set, set_cover
-from cellcolor.solvers.bounds.crossings import enough_crossings
-from cellcolor.solvers.cpsat.dart_graph import DartGraph, complete_graph, dart_graph, widened
+from cellcolor.solvers.cpsat.dart_graph import (
+    DartGraph,
+    complete_graph,
+    dart_graph,
+    enough_crossings,
+    widened,
+)
 from cellcolor.solvers.cpsat.exact_shapes import exact_minimum, painting_of_areas
 from cellcolor.solvers.cpsat.formulation import SectorModel
 from cellcolor.solvers.cpsat.local_search import recolor
 from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, moved, segments_of
-from cellcolor.solvers.cpsat.runner import Runner
-from cellcolor.solvers.cpsat.segment_plans import Planner, SegmentPlan, Undecided
+from cellcolor.solvers.cpsat.segment_plans import Planner, Undecided
 from cellcolor.solvers.interface import Options
+from cellcolor.solvers.interruptible import Runner
 
 FEW_STRANDS = 2
 """Strands of a seam in local search."""
@@ -43,22 +50,27 @@ LEVELS = (1, 0.1), (2, 0.2), (0, 0.7)
 """How much of a linear relaxation plans are made with, and the share of the effort. Plans of many
 segments are ruled out by a full relaxation, by a small one or by none, hardly ever by all."""
 
-
 MOST_LITERALS = 100_000
 """A larger model takes longer to build than local search takes to find more."""
+
+MOST_CONFLICTS = 2_000
+"""With more of them a certificate would be large, and searching it slow."""
 
 
 class Part:
     """The best division of a part so far, and its proved bounds.
 
+    Args:
+        report: called whenever the best division or the bound has changed.
+
     Attributes:
-        instance: the part's.
         cells: the cell of the whole instance that each cell of the part is.
+        regions: the color regions: for each color the sets of cells that it connects.
+        best: the best division, on its dart graph.
         segments: of the best division.
         bound: no division in the search space has fewer segments.
         surface_bound: no division of the surface has fewer.
         by: what proved ``bound``: the kind of bound.
-        best: the best division, on its dart graph.
         cover_bound: the size of a smallest cover, or what is proved of it.
         planner: what plans its segments; None before.
         model_size: how large the complete model is, if it was solved.
@@ -77,6 +89,7 @@ class Part:
         self._options, self._runner, self._report = options, runner, report
         self._enough = enough_crossings(instance)
         self._once = dict.fromkeys(self._enough, 1)
+        self.regions = color_regions(instance)
         self.bound = self.surface_bound = len(greedy_independent_set(self.regions))
         self.by = "strangers"
         self.cover_bound = self.bound
@@ -106,11 +119,6 @@ class Part:
         """
         wide = all(enough <= self._options.strands for enough in self._enough.values())
         return self.bound if wide else self.surface_bound
-
-    @cached_property
-    def regions(self) -> list[Region]:
-        """The color regions: for each color the sets of cells that it connects."""
-        return color_regions(self.instance)
 
     def cover(self, deadline: Deadline) -> None:
         """A smallest set cover: the first bound, and a division with every cell painted whole."""
@@ -172,7 +180,11 @@ class Part:
             if plan is None:
                 self._raise_to(self.bound + 1, "conflicts", for_surface=True)
                 continue
-            self._begin_with(plan, deadline)
+            self._planned = [region for region, _ in plan]
+            start = self._covered([(region[0], cells) for region, cells in plan])
+            self._keep(*start)
+            if not self.done:
+                self._recolor(*start, Random(self._options.seed), deadline, FEW_MOVES)
             if self.done or not self.planner.find_separations(plan, deadline):
                 return
 
@@ -186,6 +198,50 @@ class Part:
             self._minimize(self._once, deadline.share(1 / 4))
         if not self.done:
             self._minimize(self._widest, deadline)
+
+    def certified(self) -> CertifiedPart:
+        """What shows that no division of the surface has fewer segments than ``surface_bound``."""
+
+        def cells(merged_cell: Iterable[int]) -> tuple[int, ...]:
+            return tuple(sorted(self.cells[cell] for cell in merged_cell))
+
+        # A part that a smallest cover proves needs nothing of what was planned.
+        planner = self.planner if self.surface_bound > self.cover_bound else None
+        conflicts = [
+            CertifiedCrossing(
+                (one[0], other[0]),
+                (cells(separation.ends[0]), cells(separation.ends[1])),
+                (cells(near), cells(far)),
+            )
+            for one, other, separation in ([] if planner is None else planner.separations)
+            for group, further in combinations(separation.groups, 2)
+            for near, far in product(group, further)
+        ]
+        return CertifiedPart(self.surface_bound, self._hardest(conflicts), tuple(conflicts))
+
+    def _hardest(self, conflicts: Sequence[CertifiedCrossing]) -> tuple[int, ...]:
+        """One cell of each kind, without those that are touched wherever another one is.
+
+        Two cells are of one kind if they lie in the same color regions and the same ends of
+        conflicts. A cell of none of these can be touched by whatever touches a cell that has no
+        other regions.
+        """
+        regions: dict[int, set[int]] = {cell: set() for cell in self.cells}
+        for number, (_, own) in enumerate(self.regions):
+            for cell in own:
+                regions[self.cells[cell]].add(number)
+        ends: dict[int, set[tuple[int, int]]] = {cell: set() for cell in self.cells}
+        for number, conflict in enumerate(conflicts):
+            for end, area in enumerate((*conflict.one, *conflict.other)):
+                for cell in area:
+                    ends[cell].add((number, end))
+        first: dict[tuple[frozenset[int], frozenset[tuple[int, int]]], int] = {}
+        for cell in sorted(self.cells):
+            first.setdefault((frozenset(regions[cell]), frozenset(ends[cell])), cell)
+        hard = (
+            cell for (own, at), cell in first.items() if at or not any(o < own for o, _ in first)
+        )
+        return tuple(sorted(hard))
 
     def _minimize(self, strands: dict[int, int], deadline: Deadline) -> None:
         try:
@@ -222,14 +278,6 @@ class Part:
         seams = widened(self.instance, self._once, FEW_STRANDS)
         return dart_graph(self.instance, self._once, seams)
 
-    def _begin_with(self, plan: SegmentPlan, deadline: Deadline) -> None:
-        """Local search from cells that are painted whole, as a plan has them."""
-        self._planned = [region for region, _ in plan]
-        start = self._covered([(region[0], cells) for region, cells in plan])
-        self._keep(*start)
-        if not self.done:
-            self._recolor(*start, Random(self._options.seed), deadline, FEW_MOVES)
-
     def _covered(self, regions: Sequence[Region]) -> tuple[DartGraph, Painting]:
         """Every cell painted whole in the color of the last region that has it."""
         color_of = {cell: color for color, cells in regions for cell in cells}
@@ -249,7 +297,8 @@ class Part:
         rings: int = 1,
     ) -> None:
         """What local search makes of a canonical painting, kept if it is the best so far."""
-        for better in recolor(graph, painting, rng, self.bound, deadline, moves, rings):
+        regions, enough = self.regions, self.bound
+        for better in recolor(graph, regions, painting, rng, enough, deadline, moves, rings):
             self._keep(graph, better)
             if self.done:
                 return
@@ -274,3 +323,11 @@ class Part:
         self._running = segments
         if segments is not None:
             self._report()
+
+
+def conflict_certificate(parts: Sequence[Part]) -> CertifiedParts | None:
+    """With what a checker verifies without a solver that bounds add up; None if too large."""
+    found = tuple(part.certified() for part in parts)
+    if sum(len(part.conflicts) for part in found) > MOST_CONFLICTS:
+        return None
+    return CertifiedParts(parts=found)

@@ -3,7 +3,8 @@
 A division of the cells is a coloring of the sectors, and cutting paths are the borders between
 colors. They cannot cross, because the graph is drawn in the plane of each cell. Segments are the
 connected sets of sectors of one color. The model (``formulation``) and local search both work on
-this graph.
+this graph. Each division can be drawn on it in one way: each sub-cell takes the sectors of its
+darts, and connects them in the ring of its nesting height (docs/formulation.md, "Rings").
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -19,14 +21,13 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import TooLarge
 from cellcolor.solvers.cpsat.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block, Painting
+from cellcolor.union_find import UnionFind
 
 
 class Link(NamedTuple):
-    """Two neighboring sectors.
+    """Two neighboring sectors; the link is side 0 of the one, and side 1 of the other.
 
     Attributes:
-        one: the sector whose side 0 the link is.
-        other: the sector whose side 1 it is.
         dart: the dart of ``one`` across which the other one lies; -1 if both are of one cell.
     """
 
@@ -43,7 +44,6 @@ class SectorGraph:
     Without rings it is all center.
 
     Attributes:
-        graph: the dart graph, with one cyclic list for each cell.
         nodes: the sectors of each cell: ring by ring from the border inwards, and the center.
         rings: how many rings each cell has.
         cell: the cell of each sector.
@@ -110,15 +110,12 @@ def sector_graph(
 ) -> SectorGraph:
     """Cut every cell into sectors, with as many rings as every scheme can be drawn in.
 
-    Let m be the length of the longest chain of nested chords between two darts of a common color.
-    Then (m - 1) / 2 rings, rounded up, are enough (docs/formulation.md).
-
     Args:
-        most_rings: no cell gets more rings; some schemes may then have no room.
+        most_rings: of a cell; some schemes may then have no room.
         most_colors: of all sectors together, each in any color of its cell.
 
     Raises:
-        TooLarge: there would be more; what is too large is not made.
+        TooLarge: there would be more colors; what is too large is not made.
     """
     made = SectorGraph(graph)
     made.at.extend([0] * len(graph.darts))
@@ -130,10 +127,8 @@ def sector_graph(
         rings = _enough_rings([graph.darts[dart].colors for dart in darts], most)
         colors += (count * rings + 1) * len(graph.colors[cell])
         if most_colors is not None and colors > most_colors:
-            raise TooLarge(
-                "The model was not built: "
-                f"it would need more than {most_colors} literals for the colors of sectors."
-            )
+            need = f"more than {most_colors} literals for the colors of sectors"
+            raise TooLarge(f"The model was not built: it would need {need}.")
         made.nodes.append(range(first, first + count * rings + 1))
         made.rings.append(rings)
         made.cell.extend([cell] * len(made.nodes[-1]))
@@ -151,11 +146,7 @@ def sector_graph(
 
 
 def _add_rings(made: SectorGraph, cell: int, outward: Sequence[tuple[int, int] | None]) -> None:
-    """Link the sectors of a cell, and put all links in order around them.
-
-    Args:
-        outward: the link across each dart, with the side of it; None if there is none.
-    """
+    """Link the sectors of a cell in order; ``outward`` has the link across each dart, if any."""
     first, count, rings = made.nodes[cell][0], len(outward), made.rings[cell]
 
     def link(one: int, other: int) -> int:
@@ -182,6 +173,9 @@ def _add_rings(made: SectorGraph, cell: int, outward: Sequence[tuple[int, int] |
 def _enough_rings(colors: Sequence[frozenset[int]], most: int) -> int:
     """How many rings every scheme can be drawn in, or ``most`` if these are more.
 
+    With m nested chords between darts of a common color at most, they are (m - 1) / 2, rounded up
+    (docs/formulation.md).
+
     Args:
         colors: those joinable at each dart of a cyclic list.
     """
@@ -191,12 +185,10 @@ def _enough_rings(colors: Sequence[frozenset[int]], most: int) -> int:
 
 
 def _longest_chain(colors: Sequence[frozenset[int]], enough: int) -> int:
-    """The most chords between darts of a common color of which each separates its neighbors.
+    """The most nested chords between darts of a common color; it ends where these are enough.
 
-    The search ends where there are enough of them.
-
-    Chords of a chain are nested in some stretch of the cyclic list. So ``most[first]`` is the
-    length of the longest chain of nested chords in the stretch of ``size`` darts from the first.
+    They are nested in some stretch of the cyclic list: ``most[first]`` is the length of the longest
+    chain in the stretch of ``size`` darts from the first.
     """
     count = len(colors)
     share = np.array([[not one.isdisjoint(other) for other in colors] for one in colors])
@@ -213,26 +205,90 @@ def _longest_chain(colors: Sequence[frozenset[int]], enough: int) -> int:
 
 def painting_of_sectors(sectors: SectorGraph, colors: Sequence[int]) -> Painting:
     """The division in which each sector has the given color."""
-    graph, beside = sectors.graph, sectors.beside
-    block_of: dict[int, Block] = {}
-    painting: Painting = []
+    together = UnionFind(range(len(colors)))
+    for one, other, dart in sectors.links:
+        if dart < 0 and colors[one] == colors[other]:
+            together.union(one, other)
+    blocks = [Block(color, set()) for color in colors]
+    for number, dart in enumerate(sectors.graph.darts):
+        node, color = sectors.at[number], colors[sectors.at[number]]
+        if color == colors[sectors.at[dart.twin]] and color in dart.colors:
+            blocks[together[node]].darts.add(number)
+    painting = []
     for nodes in sectors.nodes:
-        blocks: list[Block] = []
-        for node in nodes:
-            if node in block_of:
-                continue
-            block_of[node] = Block(colors[node], set())
-            blocks.append(block_of[node])
-            reached = [node]
-            for place in reached:
-                for other in beside[place]:
-                    if other not in block_of and colors[other] == colors[node]:
-                        block_of[other] = block_of[node]
-                        reached.append(other)
-        painting.append(blocks)
-    for number, dart in enumerate(graph.darts):
-        node, beyond = sectors.at[number], sectors.at[dart.twin]
-        color = colors[node]
-        if color == colors[beyond] and color in dart.colors:
-            block_of[node].darts.add(number)
-    return [[block for block in cell if block.darts] or cell[:1] for cell in painting]
+        own = [blocks[root] for root in dict.fromkeys(together[node] for node in nodes)]
+        painting.append([block for block in own if block.darts] or own[:1])
+    return painting
+
+
+def sector_colors(sectors: SectorGraph, painting: Painting) -> list[int]:
+    """The color of each sector in a canonical painting of the same graph.
+
+    Where there are too few rings, sub-cells that are nested too deeply come apart.
+    """
+    colors: list[int] = []
+    for cell, blocks in enumerate(painting):
+        rings, shown = sectors.rings[cell], _shown(sectors.graph.lists[cell], blocks)
+        if not rings or len({id(block) for block in shown}) < 2:
+            inner = shown[0] if shown else blocks[0]
+            colors += [inner.color] * len(sectors.nodes[cell])
+        else:
+            rows, center = _rows(shown, rings)
+            colors += [block.color for row in rows for block in row]
+            colors.append(center.color)
+    return colors
+
+
+def _shown(darts: Sequence[int], blocks: Sequence[Block]) -> list[Block]:
+    """The block at each dart of a cyclic list; a dart in state 0 shows the one before it."""
+    block_of = {dart: block for block in blocks for dart in block.darts}
+    shown = next((block_of[dart] for dart in reversed(darts) if dart in block_of), blocks[0])
+    found = []
+    for dart in darts:
+        shown = block_of.get(dart, shown)
+        found.append(shown)
+    return found
+
+
+def _rows(shown: Sequence[Block], rings: int) -> tuple[list[list[Block]], Block]:
+    """The block at each place of each ring, and at the center."""
+    starts = [own for before, own in pairwise([shown[-1], *shown]) if own is not before]
+
+    def order(root: Block) -> tuple[int, int]:
+        heights = _nesting(shown, root)[1].items()
+        deepest = max((height for block, height in heights if block != id(root)), default=0)
+        return deepest, -sum(own is root for own in starts)
+
+    root = min({id(block): block for block in shown}.values(), key=order)
+    above, height = _nesting(shown, root)
+    rows, row = [], list(shown)
+    for ring in range(rings):
+        row = [
+            above[id(block)] if block is not root and height[id(block)] < ring else block
+            for block in row
+        ]
+        rows.append(row)
+    return rows, root
+
+
+def _nesting(shown: Sequence[Block], root: Block) -> tuple[dict[int, Block], dict[int, int]]:
+    """For each block the one around it, seen from a root, and how deeply others are nested in it.
+
+    Blocks do not cross, so those that are open form a stack.
+    """
+    start = next(place for place, block in enumerate(shown) if block is root)
+    turned = [*shown[start:], *shown[:start]]
+    last = {id(block): place for place, block in enumerate(turned)}
+    last[id(root)] = len(turned)
+    stack: list[Block] = []
+    above: dict[int, Block] = {}
+    height: dict[int, int] = {}
+    for place, block in enumerate([*turned, root]):
+        while stack and last[id(stack[-1])] < place:
+            done = stack.pop()
+            height[id(stack[-1])] = max(height[id(stack[-1])], height[id(done)] + 1)
+        if id(block) not in height:
+            height[id(block)] = 0
+            above[id(block)] = stack[-1] if stack else root
+            stack.append(block)
+    return above, height

@@ -28,7 +28,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.conflicts import RegionPair, Separation, Side
 from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.bounds.merged_surface import merge_cells
-from cellcolor.solvers.cpsat.runner import Solve
+from cellcolor.solvers.interruptible import Solve
 
 SegmentPlan = tuple[tuple[Region, frozenset[int]], ...]
 """Each segment's color region, and the cells that it is to touch; each cell is given to one."""

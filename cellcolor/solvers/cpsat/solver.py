@@ -11,8 +11,9 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from importlib.metadata import version
 from math import isfinite
+
+import ortools
 
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Strand
@@ -21,7 +22,6 @@ from cellcolor.data.solution import ModelSize, Seam, count_segments
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import color_regions, greedy_independent_set
-from cellcolor.solvers.cpsat.certificates import conflict_certificate
 from cellcolor.solvers.cpsat.dart_graph import (
     DartGraph,
     dart_graph,
@@ -37,9 +37,9 @@ from cellcolor.solvers.cpsat.painting import (
     division_of,
     painting_of,
 )
-from cellcolor.solvers.cpsat.part import Part
-from cellcolor.solvers.cpsat.runner import Runner
+from cellcolor.solvers.cpsat.part import Part, conflict_certificate
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
+from cellcolor.solvers.interruptible import Runner
 
 SHARES = {"exact": 1 / 4, "improve": 1 / 5, "separate": 1 / 2, "model": 2 / 3, "turn": 1 / 4}
 """The share of the time that is left which each step gets."""
@@ -66,10 +66,7 @@ class CpSatSolver:
         start=True,
     )
 
-    @property
-    def version(self) -> str:
-        """The version of OR-Tools."""
-        return f"OR-Tools {version('ortools')}"
+    version = f"OR-Tools {ortools.__version__}"
 
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
@@ -85,7 +82,7 @@ class CpSatSolver:
     def optimal_schemes(
         self, instance: Instance, options: Options, segments: int
     ) -> OptimalSchemes:
-        """Every scheme with the given minimum, once."""
+        """Every scheme with the fewest segments, once."""
         return OptimalSchemes(instance, options, segments)
 
 
@@ -99,8 +96,7 @@ class _Search:
         self._start: tuple[DartGraph, Painting] | None = None
         self._parts: list[Part] = []
         begun = time.monotonic()
-        self._whole: tuple[DartGraph, Painting] | None = None
-        self._whole = self._put_together()
+        self._put_together()
         self._deadline = options.deadline.earlier(RESERVES * (time.monotonic() - begun))
         self._runner = Runner(replace(options, deadline=self._deadline))
 
@@ -175,17 +171,13 @@ class _Search:
 
     def _put_together(self) -> tuple[DartGraph, Painting]:
         """The best divisions of all parts as one; without parts every cell is painted whole."""
-        if not self._parts and self._whole is not None:
-            return self._whole
         found: dict[int, list[tuple[int, list[Strand]]]] = {}
         widths = {seam.id: 0 for seam in self._places}
-        seams_of: dict[int, list[int]] = {}
-        for seam in self._places:
-            seams_of.setdefault(seam.cell, []).append(seam.id)
         for part in self._parts:
             graph, painting = part.best
-            # Seams have other ids in the part.
-            ids = [seam for cell in part.cells for seam in seams_of.get(cell, ())]
+            # Seams have other ids in the part, in the same order.
+            own_cells = set(part.cells)
+            ids = [seam.id for seam in self._places if seam.cell in own_cells]
             widths |= {seam: own.strands for seam, own in zip(ids, graph.seams, strict=True)}
             whole = {own.id: seam for seam, own in zip(ids, graph.seams, strict=True)}
             whole |= {-own: -seam for own, seam in whole.items()}
@@ -212,13 +204,8 @@ class _Search:
         A kind is named only where it raised the bound of some part.
         """
         if not self._parts:
-            return (
-                Bound(
-                    "strangers",
-                    len(greedy_independent_set(color_regions(self._instance))),
-                    "surface",
-                ),
-            )
+            apart = greedy_independent_set(color_regions(self._instance))
+            return (Bound("strangers", len(apart), "surface"),)
         certificate = conflict_certificate(self._parts)
         by = {part.by for part in self._parts}
         bounds = [

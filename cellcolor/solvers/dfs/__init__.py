@@ -3,8 +3,8 @@
 - ``graph``: section III-C, cells as cyclic lists of topological edges
 - ``cell_schemes``: section IV, the codes of 0, 1, × and brackets of one cell
 - ``search``: section V, the graph solved cell by cell, with the cost of section V-A; and of section
-  IV-C, zeros are moved outside the brackets
-- ``cover``: not in the paper, a lower bound from a set cover (solver ``dfs-cover``)
+  IV-C, zeros are moved outside the brackets. Not in the paper: a lower bound from a set cover
+  (solver ``dfs-cover``)
 """
 
 from cellcolor.solvers.dfs.solver import CoverReferenceSolver, ReferenceSolver

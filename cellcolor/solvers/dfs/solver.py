@@ -9,10 +9,8 @@ from cellcolor.data.cells_and_edges import DartName
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, number_segments
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.errors import InputError
-from cellcolor.solvers.dfs.cover import CoverSearch
 from cellcolor.solvers.dfs.graph import Graph
-from cellcolor.solvers.dfs.search import DepthFirstSearch, Painting
+from cellcolor.solvers.dfs.search import CoverSearch, DepthFirstSearch, Painting
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 
 _Blocks = dict[int, list[tuple[int, list[DartName]]]]
@@ -37,11 +35,7 @@ class ReferenceSolver:
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
-        """The best division that the time limit allowed.
-
-        In the search space ``surface`` it has the fewest segments that ``options.strands``
-        corridors across each edge allow, and the lower bound is one that any division obeys.
-        """
+        """The best division that the time limit allowed."""
         parts = self._parts(instance, options)
         before = sum(part.bound for part in parts)
 
@@ -73,27 +67,11 @@ class ReferenceSolver:
     def optimal_schemes(
         self, instance: Instance, options: Options, segments: int
     ) -> Iterator[Division]:
-        """Every scheme with the given minimum, once.
+        """Every scheme with the fewest segments, once; cells have one live loop.
 
         Raises:
-            InputError: a cell has several live loops, or edges have strands: schemes are defined
-                for neither.
             ValueError: ``segments`` is not the minimum.
         """
-        if options.search_space != "paper" or options.strands != 1:
-            message = "optimal schemes are defined in the search space 'paper' only"
-            raise InputError(None, "search_space", message)
-        for cell, loops in enumerate(instance.live_loops):
-            if len(loops) > 1:
-                raise InputError(
-                    None,
-                    f"cells[{cell}].loops",
-                    f"cell {cell} has several loops with live darts: optimal schemes are defined "
-                    "for cells with one",
-                )
-        return self._schemes(instance, options, segments)
-
-    def _schemes(self, instance: Instance, options: Options, segments: int) -> Iterator[Division]:
         parts = self._parts(instance, options)
         for part in parts:
             for _ in part.improve():

@@ -11,8 +11,7 @@ from meshes import drawn
 import cellcolor
 from cellcolor.checker.certificates import VERIFIERS
 from cellcolor.checker.proof import Proof, Refused
-from cellcolor.data.bound_kinds import KINDS, certificate_of
-from cellcolor.data.bounds import Bound, BoundKind, Certificate, Mark, Shown
+from cellcolor.data.bounds import KINDS, Bound, BoundKind, Certificate, Mark, Shown, certificate_of
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.pictures.picture import Picture3D

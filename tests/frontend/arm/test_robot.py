@@ -185,7 +185,7 @@ def test_followers_in_the_chain_are_refused(written: Callable[..., Path]) -> Non
     # Of the elbow: an arm whose forearm follows the upper arm.
     joint = r'(<joint name="elbow_joint" type="revolute">)'
     folder = written(ARM, joint, r'\1<mimic joint="shoulder_lift_joint" multiplier="-1"/>')
-    with pytest.raises(InputError, match="may not follow") as caught:
+    with pytest.raises(InputError, match="follows 'shoulder_lift_joint', which moves") as caught:
         load(folder)
     assert (caught.value.file, caught.value.field) == (
         str(folder / ARM),

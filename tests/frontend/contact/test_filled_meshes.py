@@ -16,7 +16,7 @@ from cellcolor.frontend.arm.body import Shape, convex_hull, mesh_body
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, Pair
-from cellcolor.trajectory_checker.contacts import touching
+from cellcolor.trajectory_checker.validity import touching
 from examples import examples
 
 

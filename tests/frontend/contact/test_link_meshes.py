@@ -23,7 +23,7 @@ from cellcolor.frontend.contact.engine import Contacts, Pair, pairs_of, pairs_wi
 from cellcolor.frontend.contact.obstacle import BoxObstacle, CylinderObstacle, SphereObstacle
 from cellcolor.frontend.contact.tip import HalfSpace
 from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
-from cellcolor.trajectory_checker.contacts import touching
+from cellcolor.trajectory_checker.validity import touching
 
 pytestmark = pytest.mark.second
 

@@ -15,8 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.mesh_file import load_mesh, read_mesh, read_obj
-from cellcolor.frontend.parts.polygons import triangulated
+from cellcolor.frontend.parts.mesh_file import load_mesh, read_mesh, read_obj, triangulated
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"

@@ -48,7 +48,7 @@ class Plane:
         flat, faces = disc_mesh(7, 0.0, 0)
         vertices = np.column_stack([flat, np.zeros(7)])
         self.surface = Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (7, 1)))
-        self.edges = self.surface.edges()
+        self.edges = self.surface.mesh.edges
         self.branches, self.determinant = branches, determinant
         every = np.arange(len(branches))
         configurations = np.stack([self.joints(vertices, np.full(7, b)) for b in every], axis=1)

@@ -25,11 +25,10 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, Scene, build_surface
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, signed_task_determinant, tip_jacobian
-from cellcolor.frontend.build import build_prepared
+from cellcolor.frontend.build import StageClock, build_prepared
 from cellcolor.frontend.prepared import PreparedScene, named, prepare
 from cellcolor.frontend.reach.sheets import Followed
 from cellcolor.frontend.reach.smooth import Tracker
-from cellcolor.frontend.stage_clock import StageClock
 
 pytestmark = pytest.mark.second
 
@@ -125,7 +124,7 @@ def test_without_names_an_arm_with_passing_wrist_axes_has_colors() -> None:
     surface = result.prepared.surface
     # By Newton's method on Pinocchio's Jacobian the links lead to where the sheets say.
     for k in np.random.default_rng(1).choice(len(row), 8, replace=False):
-        ends = surface.edges()[row[k]]
+        ends = surface.mesh.edges[row[k]]
         start, goal = result.configurations[ends, sheet[k]]
         path = follower.along(start, surface.vertices[ends], surface.normals[ends])
         assert path is not None and wrapped(path[-1] - goal).max() < 1e-6
@@ -142,7 +141,7 @@ def linked_nodes(prepared: PreparedScene) -> tuple[Array, Array, Array]:
     solutions = tracker.described(verdicts.configurations)
     limits = prepared.robot.lower, prepared.robot.upper
     matching = Followed.of(surface, nodes, solutions, tracker, limits)
-    return solutions.joints, nodes, matching.along(surface.edges(), NEVER)[0]
+    return solutions.joints, nodes, matching.along(surface.mesh.edges, NEVER)[0]
 
 
 @pytest.mark.second
@@ -160,7 +159,7 @@ def test_a_cuspidal_arm_is_refused_with_both_configurations(
     monkeypatch.setattr("cellcolor.frontend.prepared.named", lambda prepared, _: prepared)
     prepared = prepare(scene)
     surface, robot = prepared.surface, prepared.robot
-    edges = surface.edges()
+    edges = surface.mesh.edges
     joints, nodes, pairs = linked_nodes(prepared)
     slots = nodes.shape[1]
     here, there = (edges[pairs[:, 0], end] * slots + pairs[:, 1 + end] for end in (0, 1))

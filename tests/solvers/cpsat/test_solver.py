@@ -23,8 +23,8 @@ from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.cpsat.dart_graph import split
 from cellcolor.solvers.cpsat.painting import division_of
 from cellcolor.solvers.cpsat.part import Part
-from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.interface import Options, Start
+from cellcolor.solvers.interruptible import Runner
 from examples import examples
 
 RED, BLUE = 0, 1

@@ -14,7 +14,6 @@ from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import scheme_key
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.errors import InputError
 from cellcolor.lab.families import hub, planar_graph
 from cellcolor.solvers.dfs import ReferenceSolver
 from cellcolor.solvers.interface import Answer, Options
@@ -69,15 +68,6 @@ def test_names_do_not_matter(solver: ReferenceSolver, seed: int) -> None:
     best = segments(instance, solver.minimize(instance, Options()))
     assert segments(other, solver.minimize(other, Options())) == best
     assert schemes(solver, other, best) == schemes(solver, instance, best)
-
-
-@BOTH
-def test_schemes_are_refused_where_they_are_not_defined(solver: ReferenceSolver) -> None:
-    with pytest.raises(InputError, match="cell 1 has several loops") as caught:
-        solver.optimal_schemes(Instance.read(PAPER / "annulus.json"), Options(), 3)
-    assert caught.value.field == "cells[1].loops"
-    with pytest.raises(InputError, match="paper"):
-        solver.optimal_schemes(Instance.read(PAPER / "ring.json"), SURFACE, 2)
 
 
 @BOTH
