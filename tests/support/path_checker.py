@@ -1,8 +1,8 @@
 """Whether tool paths stay on their segments, found out from the painted surface alone.
 
 A vertex has the part of each of its triangles where its barycentric coordinate is the greatest.
-Each step is cut where two coordinates are equal; from piece to piece a path may go from one vertex's
-part to that of another one over an edge between them that is open. Nothing of
+Each step is cut where two coordinates are equal; from piece to piece a path may go from one
+vertex's part to that of another one over an edge between them that is open. Nothing of
 ``cellcolor.tool_paths`` is used.
 """
 
