@@ -206,7 +206,7 @@ def show(file: Path, claim: Path | None, output: Path, view: str | None, **of: A
     """
     from cellcolor.cli.inputs import open_file
     from cellcolor.data.plan import Plan
-    from cellcolor.door.drawing import draw, kind_of_picture, view_of
+    from cellcolor.door.drawing import draw, kind_of_picture, picture_of
     from cellcolor.door.installed import extras_for
     from cellcolor.door.reading import format_of_claim
 
@@ -216,12 +216,12 @@ def show(file: Path, claim: Path | None, output: Path, view: str | None, **of: A
     of["plan" if claim and format_of_claim(claim) == Plan.FORMAT else "solution"] = claim
     with extras_for(file):
         try:
-            seen, picture = view_of(view, **of)
+            picture = picture_of(view, "cells", of)
         except InputError as error:  # what is wrong is an option, not a file
             raise click.UsageError(str(error)) from error
     subject = open_file(file)
     with extras_for(output):
-        drawing = draw(picture, subject, seen)
+        drawing = draw(picture, subject, of)
         content = drawing.render(output.suffix)
     INTERRUPTS.check()
     write([Output(output, kind, [content])], inputs)

@@ -145,6 +145,11 @@ def members_of(value: Any, always: Collection[str] = ()) -> dict[str, Any]:
     return found
 
 
+def named_members(value: Any, *names: str) -> dict[str, Any]:
+    """Some members and properties of a dataclass as JSON has them, in this order."""
+    return {name: _plain(getattr(value, name)) for name in names}
+
+
 def every_member_of(value: Any) -> dict[str, Any]:
     """The members of a dataclass as JSON has them, and null for what is None."""
     return {member.name: _plain(getattr(value, member.name), True) for member in fields(value)}

@@ -11,7 +11,6 @@ import numpy as np
 
 from cellcolor.deadline import Deadline
 from cellcolor.door.asked import Telling, Work, begun
-from cellcolor.door.drawing import Drawing
 from cellcolor.door.installed import extras_for
 from cellcolor.errors import InputError, naming
 from cellcolor.files.writing import path_of
@@ -80,14 +79,6 @@ def repair(
         return repair_mesh(
             vertices, faces, scale, fill_holes_m, share, edge_length_m, deadline, tell
         )
-
-
-def draw_inspection(inspection: Inspection) -> Drawing:
-    """The part with its faulty places marked."""
-    with extras_for("a picture"):
-        from cellcolor.pictures.mesh_picture import faulty_part
-
-        return Drawing(faulty_part(inspection))
 
 
 @contextmanager

@@ -90,7 +90,7 @@ class _Placed(NamedTuple):
     def of(cls, thing: Body | Shape, poses: Poses) -> _Placed:
         """A body in the configurations of poses, or what stands still beside them."""
         shape, joint = (thing.shape, thing.joint) if isinstance(thing, Body) else (thing, 0)
-        turn, at = poses.body_rotation[:, joint], poses.body_origin[:, joint]
+        turn, at = poses.rotation[:, joint], poses.origin[:, joint]
         return cls(shape, turn @ shape.rotation, turn @ shape.origin + at)
 
     def points(self, own: Array) -> Array:

@@ -12,7 +12,7 @@ from meshes import drawn, surfaces
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.decomposition import Decomposition, decompose, decomposition_of, locate
+from cellcolor.decomposition import Decomposition, decomposition_of, locate
 from cellcolor.errors import InputError
 
 
@@ -22,16 +22,6 @@ def found(surface: LabelledSurface) -> Decomposition:
     except InputError:  # a cell with a handle
         assume(False)
         raise
-
-
-@given(surfaces())
-def test_cells_of_vertices(surface: LabelledSurface) -> None:
-    made = found(surface)
-    assert made.instance == decompose(surface, "s.json")
-    assert made.instance.surface is not None
-    assert made.vertex_cell == made.instance.surface.vertex_cell
-    for cell, colors in zip(made.vertex_cell, surface.vertex_colors, strict=True):
-        assert colors == (() if cell == OUTSIDE else made.instance.cells[cell].colors)
 
 
 @given(surfaces())

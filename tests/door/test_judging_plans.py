@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,22 +11,11 @@ from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 from meshes import drawn, surfaces
 
-import cellcolor.checker.vertex_plan
-import cellcolor.decomposition
-import cellcolor.door.oracle
-import cellcolor.oracle.ranges
-import cellcolor.solvers.checked
 from cellcolor import judge, proven_range
-from cellcolor.cli import main
-from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
-from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.deadline import NEVER, Deadline
-from cellcolor.decomposition import Decomposition
 from cellcolor.errors import BeatenBound, InputError
 from cellcolor.oracle import ProvenRange, Verdict
-from cellcolor.solvers.interface import Options
 from examples import examples
 
 CORRIDORS = PAPER / "parallel-corridors.surface.json"
@@ -43,18 +30,6 @@ def halves(surface: LabelledSurface) -> Plan:
         wanted = RED if y > middle else BLUE
         colors.append(wanted if wanted in available else next(iter(available), None))
     return Plan(tuple(colors))
-
-
-@pytest.mark.parametrize(
-    "path", sorted(PAPER.glob("*.surface.json")), ids=lambda path: path.name.partition(".")[0]
-)
-def test_range_holds_what_is_known(path: Path) -> None:
-    known = Instance.read(path.with_name(path.name.replace(".surface", ""))).known
-    bounds = proven_range(LabelledSurface.read(path), time_limit=5.0)
-    assert bounds.lower <= bounds.upper
-    assert known is not None
-    if known.surface is not None:
-        assert bounds.lower <= known.surface.segments <= bounds.upper
 
 
 @pytest.mark.parametrize(
@@ -117,54 +92,12 @@ def test_no_time_passes_for_nothing() -> None:
     assert (verdict.segments, verdict.optimal, verdict.beatable_by) == (3, None, None)
 
 
-def test_no_time_at_all() -> None:
-    """Both ends hold however early the search ends."""
-    bounds = proven_range(LabelledSurface.read(CORRIDORS), time_limit=1e-9)
-    assert bounds.lower <= 2 <= bounds.upper
-
-
 def test_no_time_for_the_graph() -> None:
     """The range is known from the vertices alone, and the right one."""
     surface = drawn("AA.AA AA.BB", {"A": [0], "B": [0, 1], ".": []})
     bounds = proven_range(surface, time_limit=1e-9)
     assert bounds.lower == 1 and bounds.upper == 8
     assert proven_range(drawn("... ...", {".": []}), time_limit=1e-9) == ProvenRange(0, 0)
-
-
-class _Clock:
-    """What ``time.monotonic`` says while time passes only where a test lets it."""
-
-    def __init__(self) -> None:
-        self.now = 0.0
-
-    def __call__(self) -> float:
-        return self.now
-
-
-@pytest.mark.parametrize(
-    ("after_search", "expected"), [(59.0, ["paper"]), (57.0, ["paper", "surface"])]
-)
-def test_no_second_search_for_which_there_is_no_time(
-    after_search: float, expected: list[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Of 60 s the graph takes 2, and so does the first division of any search."""
-    clock, searches = _Clock(), list[str]()
-    monkeypatch.setattr(time, "monotonic", clock)
-
-    def decomposition_of(surface: LabelledSurface, _: None, deadline: Deadline) -> Decomposition:
-        clock.now += 2
-        return cellcolor.decomposition.decomposition_of(surface, None, deadline)
-
-    def solve(instance: Instance, options: Options) -> Solution:
-        searches.append(options.search_space)
-        found = cellcolor.solvers.checked.solve(instance, replace(options, deadline=NEVER))
-        clock.now = after_search
-        return replace(found, surface_lower_bound=1)
-
-    monkeypatch.setattr(cellcolor.oracle.ranges, "decomposition_of", decomposition_of)
-    monkeypatch.setattr(cellcolor.oracle.ranges, "solve", solve)
-    proven_range(LabelledSurface.read(CORRIDORS), time_limit=60.0)
-    assert searches == expected
 
 
 def test_nothing_reachable() -> None:
@@ -192,14 +125,6 @@ def test_no_plan_beats_the_lower_bound(surface: LabelledSurface, data: st.DataOb
     assert verdict.optimal in (
         (True,) if verdict.segments == verdict.bounds.lower else (False, None)
     )
-
-
-def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """What it prints; its JSON is in tests/cli/test_check_json.py."""
-    (tmp_path / "plan.json").write_text(halves(LabelledSurface.read(CORRIDORS)).to_json())
-    assert main(["check", str(CORRIDORS), str(tmp_path / "plan.json")]) == 0
-    out = capsys.readouterr().out
-    assert "  2 segments, 1 lift-off, optimal: no division of the surface has fewer, because" in out
 
 
 @pytest.mark.parametrize("ends", [(7, 5), (-1, 2), (1.0, 2), (True, 2)])

@@ -114,28 +114,10 @@ def test_what_cannot_be_shown_is_refused(view: dict[str, Any], text: str, tmp_pa
     assert list(tmp_path.iterdir()) == []
 
 
-def test_nothing_else_is_overwritten(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"must end in \.html, \.png or \.svg"):
-        SURFACE.plot(tmp_path / "x.pdf")
-    with pytest.raises(InputError, match=r"must end in \.html, \.png or \.svg"):
-        SURFACE.plot().save(tmp_path / "x.pdf")
-    other = tmp_path / "x.svg"
-    other.write_text("something else", encoding="utf-8")
-    with pytest.raises(InputError, match="is not overwritten"):
-        SURFACE.plot(other)
-    assert other.read_text(encoding="utf-8") == "something else"
-
-
 def test_a_surface_of_another_solution_is_refused() -> None:
     other = cellcolor.solve(PAPER / "ring.surface.json")
     with pytest.raises(InputError, match="no valid solution of"):
         cellcolor.show(SURFACE, solution=other.solution)
-
-
-def test_a_result_is_a_solution_too() -> None:
-    result = cellcolor.solve(SURFACE)
-    drawings = [cellcolor.show(SURFACE, solution=s) for s in (result, result.solution)]
-    assert drawings[0].render(".svg") == drawings[1].render(".svg")
 
 
 @pytest.mark.parametrize("vertex", ["0", 1.5, -1, 10**6])

@@ -6,6 +6,7 @@ import json
 import re
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import dh_arms
 import numpy as np
@@ -32,6 +33,11 @@ from cellcolor.motion.posture import joint_room
 Capture = pytest.CaptureFixture[str]
 
 
+def first_is_quick(*rows: Any) -> list[Any]:
+    """Parameters of a test that takes seconds; all but the first wait for the second stage."""
+    return [rows[0], *(pytest.param(*row, marks=pytest.mark.second) for row in rows[1:])]
+
+
 @pytest.fixture
 def plate(tmp_path: Path) -> Path:
     """A plate of 160 x 120 mm with a low hump, in millimeters, as its file's origin has it."""
@@ -46,7 +52,7 @@ def plate(tmp_path: Path) -> Path:
     return file
 
 
-@pytest.mark.parametrize(("arm", "family"), [("ur5", "ur"), ("kr6", "eaik")])
+@pytest.mark.parametrize(("arm", "family"), first_is_quick(("kr6", "eaik"), ("ur5", "ur")))
 def test_family_flange_place_and_home_are_found(
     arm: str, family: str, plate: Path, tmp_path: Path
 ) -> None:
@@ -68,6 +74,7 @@ def test_family_flange_place_and_home_are_found(
     assert whole > 0.9
 
 
+@pytest.mark.second
 def test_links_that_overlap_in_every_posture_are_found_before_a_place_is_sought(
     plate: Path, tmp_path: Path
 ) -> None:
@@ -103,6 +110,7 @@ def test_the_tool_is_turned_onto_the_last_axis(rpy: tuple[float, float, float], 
     assert np.allclose(tool, [outward, 0, 0], atol=2e-3)
 
 
+@pytest.mark.second
 def test_a_flange_measured_beside_the_last_axis_is_moved_onto_it(
     plate: Path, tmp_path: Path
 ) -> None:
@@ -131,6 +139,7 @@ def test_ready_to_plan(plate: Path, tmp_path: Path, capsys: Capture) -> None:
     assert planned.trajectory.lift_offs == planned.solution.lift_offs
 
 
+@pytest.mark.second
 def test_only_its_own_files_are_replaced(plate: Path, tmp_path: Path, capsys: Capture) -> None:
     folder, arm = tmp_path / "new", ROBOTS / "ur5.urdf"
     assert run("new", plate, arm, "-o", folder) == 0
@@ -201,12 +210,12 @@ def new(capsys: Capture, part: Path, arm: Path, folder: Path, *options: str) -> 
 
 @pytest.mark.parametrize(
     ("options", "flipped", "faces"),
-    [
-        ((), False, "down"),
+    first_is_quick(
         (("--outside", "flip"), True, "up"),
+        ((), False, "down"),
         (("--outside", "toward"), True, "up"),
         (("--outside", "away"), False, "down"),
-    ],
+    ),
 )
 def test_a_sheet_wound_inside_out(
     options: tuple[str, ...],
@@ -228,6 +237,7 @@ def test_a_sheet_wound_inside_out(
     assert (prepare(scene).surface.normals[:, 2].mean() > 0) == (faces == "up")
 
 
+@pytest.mark.second
 def test_a_sheet_wound_half_each_way(plate: Path, tmp_path: Path, capsys: Capture) -> None:
     """What inspect and repair say of it, new says as well."""
     mesh = trimesh.load_mesh(plate)
@@ -240,6 +250,7 @@ def test_a_sheet_wound_half_each_way(plate: Path, tmp_path: Path, capsys: Captur
     assert Scene.read(tmp_path / "new" / "scene.toml").object.repair
 
 
+@pytest.mark.second
 def test_the_part_is_not_put_too_near(plate: Path, tmp_path: Path) -> None:
     """At the nearest place where all is reached, the wrist is 0.23 rad from being straight."""
     made = cellcolor.new(plate, ROBOTS / "kr6.urdf", tmp_path / "new")
@@ -257,7 +268,8 @@ def shell(folder: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("options", "side"), [((), "up"), (("--outside", "away"), "down"), (("--cover", "all"), "both")]
+    ("options", "side"),
+    first_is_quick(((), "up"), (("--outside", "away"), "down"), (("--cover", "all"), "both")),
 )
 def test_one_side_of_a_shell(
     options: tuple[str, ...], side: str, tmp_path: Path, capsys: Capture
@@ -269,6 +281,7 @@ def test_one_side_of_a_shell(
     assert np.unique(np.round(normals[np.abs(normals[:, 2]) > 0.99, 2])).tolist() == along
 
 
+@pytest.mark.second
 def test_the_largest_piece_of_a_block(tmp_path: Path, capsys: Capture) -> None:
     trimesh.creation.box((200, 150, 100)).export(tmp_path / "block.stl")
     said = new(
@@ -279,6 +292,7 @@ def test_the_largest_piece_of_a_block(tmp_path: Path, capsys: Capture) -> None:
     assert surface.mesh.areas.sum() == pytest.approx(0.2 * 0.15)
 
 
+@pytest.mark.second
 def test_a_large_part_gets_a_mesh_of_some_thousand_vertices(
     tmp_path: Path, capsys: Capture
 ) -> None:
@@ -313,7 +327,9 @@ def on_rail(tmp_path: Path) -> Path:
     return file
 
 
-@pytest.mark.parametrize(("options", "at"), [((), 0.0), (("--fix", "rail_joint=0.4"), 0.4)])
+@pytest.mark.parametrize(
+    ("options", "at"), first_is_quick((("--fix", "rail_joint=0.4"), 0.4), ((), 0.0))
+)
 def test_an_arm_on_a_rail_stands_still(
     options: tuple[str, ...],
     at: float,
@@ -333,6 +349,7 @@ def test_an_arm_on_a_rail_stands_still(
 @pytest.mark.parametrize(
     ("fix", "message"),
     [
+        ("rail_joint=0 --fix rail_joint=1", "--fix: rail_joint is given twice"),
         ("rail_joint=4", "4 is outside the joint's limits"),
         ("rail=0.4", "robot.fixed_joints.rail: no such joint"),
         ("rail_joint", "'rail_joint' is not JOINT=POSITION"),
@@ -346,11 +363,12 @@ def test_an_arm_on_a_rail_stands_still(
 def test_a_joint_that_cannot_stand_there(
     fix: str, message: str, plate: Path, on_rail: Path, tmp_path: Path, capsys: Capture
 ) -> None:
-    assert run("new", plate, on_rail, "-o", tmp_path / "new", "--fix", fix) == 2
+    assert run("new", plate, on_rail, "-o", tmp_path / "new", "--fix", *fix.split()) == 2
     assert message in capsys.readouterr().err
     assert not (tmp_path / "new").exists()
 
 
+@pytest.mark.second
 def test_under_an_arm_that_hangs(plate: Path, tmp_path: Path) -> None:
     """The part lies below its base, not above the ground far below."""
     text = (ROBOTS / "ur5.urdf").read_text()
@@ -363,7 +381,9 @@ def test_under_an_arm_that_hangs(plate: Path, tmp_path: Path) -> None:
     assert 1.9 < Scene.read(made.scene).placement.position_m[2] < 2.7
 
 
-@pytest.mark.parametrize(("yaw", "turned"), [(90, True), (180, False), (-90, True), (0, True)])
+@pytest.mark.parametrize(
+    ("yaw", "turned"), first_is_quick((90, True), (180, False), (-90, True), (0, True))
+)
 def test_an_upright_part_is_turned_to_the_robot(
     yaw: float, turned: bool, plate: Path, tmp_path: Path, capsys: Capture
 ) -> None:
@@ -389,6 +409,7 @@ def test_the_home_is_over_the_part_and_well_conditioned(plate: Path, tmp_path: P
     assert any("100 mm over the part" in note for note in made.notes)
 
 
+@pytest.mark.second
 def test_a_tool_of_ones_own(plate: Path, tmp_path: Path) -> None:
     tool = ROBOTS / "polishing_tool.urdf"
     made = cellcolor.new(
@@ -405,11 +426,3 @@ def test_a_tool_of_ones_own(plate: Path, tmp_path: Path) -> None:
     assert not Scene.read(made.scene).setup.constraints.force
     with pytest.raises(InputError, match="tip link"):
         cellcolor.new(plate, ROBOTS / "ur5.urdf", tmp_path / "other", tool=tool)
-
-
-def test_a_joint_stands_in_one_place(
-    plate: Path, on_rail: Path, tmp_path: Path, capsys: Capture
-) -> None:
-    twice = ("--fix", "rail_joint=0", "--fix", "rail_joint=1")
-    assert run("new", plate, on_rail, "-o", tmp_path / "new", *twice) == 2
-    assert "--fix: rail_joint is given twice" in capsys.readouterr().err

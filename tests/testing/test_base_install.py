@@ -13,7 +13,6 @@ from pathlib import Path
 
 import pytest
 from guides import TOP, build_wheel
-from library import INSTANCES
 
 pytestmark = pytest.mark.slow
 
@@ -80,46 +79,6 @@ def test_there_are_no_extras(base: Environment) -> None:
     )
     assert found.endswith("[]\n")
     assert str(base.folder.parent) in found
-
-
-def test_the_library_is_opened_by_name(base: Environment) -> None:
-    """Every graph and every surface; scenes say what is missing."""
-    files = (path.name for path in INSTANCES.rglob("*.json"))
-    names = sorted(name for name in files if name != "index.json")
-    parts = sorted(path.name for path in (INSTANCES / "parts").iterdir() if path.suffix == ".toml")
-    found = json.loads(
-        base.python(
-            "import cellcolor, json\n"
-            "from cellcolor.door.installed import find_file\n"
-            "from cellcolor.errors import InputError\n"
-            f"read = [cellcolor.read(name) for name in {names}]\n"
-            "refused = []\n"
-            f"for name in {parts}:\n"
-            "    try:\n"
-            "        cellcolor.read(name)\n"
-            "    except InputError as error:\n"
-            "        refused.append(error.message)\n"
-            f"files = [p.name for n in {parts} for p in find_file(n).parent.iterdir()]\n"
-            "print(json.dumps([len(read), refused, files]))\n"
-        )
-    )
-    read, refused, files = found
-    assert read == len(names)
-    assert len(refused) == len(parts)
-    assert all("pip install 'fewest-lift-offs[frontend]'" in message for message in refused)
-    assert set(files) == {path.name for path in (INSTANCES / "parts").iterdir()}
-
-
-def test_the_oracle(base: Environment) -> None:
-    said = base.python(
-        "import cellcolor\n"
-        "oracle = cellcolor.Oracle('half_pipe.surface.json')\n"
-        "surface = oracle.surface\n"
-        f"verdict = oracle.judge({FIRST_COLORS})\n"
-        "better = oracle.judge(verdict.improvement.better.on_mesh)\n"
-        "print(verdict.beatable_by > 0, better.optimal, better.why is not None)\n"
-    )
-    assert said == "True True True\n"
 
 
 def test_the_plugin(base: Environment) -> None:
