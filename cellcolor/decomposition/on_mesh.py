@@ -26,7 +26,7 @@ def locate(
         The instance, with the areas of its cells and its coverage measured here, and the curves of
         its edges. There are none if another program has numbered the edges.
     """
-    areas = areas_of(surface, vertex_cell)
+    areas = areas_of(surface, vertex_cell, len(instance.cells))
     measured = tuple(replace(cell, area=areas[cell.id]) for cell in instance.cells)
     return Decomposition(
         replace(instance, cells=measured, coverage=surface.coverage),
