@@ -52,7 +52,7 @@ def build(source: Path, output: Path) -> Exit:
     from cellcolor.cli.tables import nothing_to_cover
     from cellcolor.data.instance import Instance
     from cellcolor.data.surface import LabelledSurface
-    from cellcolor.door.subject import Subject, is_scene
+    from cellcolor.door.subject import is_scene
 
     check_output(output, kind_of_format(Instance.FORMAT), [source])
     if is_scene(output):
@@ -70,16 +70,18 @@ def build(source: Path, output: Path) -> Exit:
         if subject.given_instance is not None:
             raise InputError(str(source), "format", "is an instance already")
         beside: list[Output] = []
+        instance = subject.graph()
         reference = os.path.relpath(source.resolve(), output.parent.resolve())
         if (built := subject.built) is not None:
             side = {"side_file": side_path.name}
             surface = replace(built.surface, meta=built.surface.meta | side)
-            subject, reference = Subject(source, built, surface), surface_path.name
+            instance, reference = replace(instance, meta=surface.meta), surface_path.name
             beside = [Output(side_path, SIDE_FILE, [built.candidates.to_bytes()])]
             beside += [Output.of(surface_path, surface)]
-        named = None if alone else PurePath(reference).as_posix()
-        instance = subject.decomposed(named).instance
-        beside = [] if alone else beside
+        named = None
+        if instance.surface is not None and not alone:
+            named = replace(instance.surface, path=PurePath(reference).as_posix())
+        instance, beside = replace(instance, surface=named), [] if alone else beside
         # The instance last: it carries the fingerprint of its surface.
         write([*beside, Output.of(output, instance)], [source])
         if built is not None:
