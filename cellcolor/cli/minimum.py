@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import Any
@@ -126,7 +125,6 @@ def solve(files: tuple[Path, ...], every: bool, limit: int | None, **given: Any)
     FILE may be the name of a shipped one, such as wok: a file of that name goes first. That holds
     for the other commands as well; cellcolor.library() lists the names in Python.
     """
-    begun = time.monotonic()
     space = given["search_space"]
     wrong = {
         "--strands needs --search-space surface": given["strands"] and space == "paper",
@@ -143,7 +141,7 @@ def solve(files: tuple[Path, ...], every: bool, limit: int | None, **given: Any)
     from cellcolor.solvers.interface import STRANDS
 
     given["strands"] = given["strands"] or STRANDS[space]
-    return solve_files(files, schemes=(limit or _SCHEMES) if every else None, begun=begun, **given)
+    return solve_files(files, schemes=(limit or _SCHEMES) if every else None, **given)
 
 
 @cellcolor.command()
@@ -178,14 +176,12 @@ def check(seconds: float, **given: Any) -> Exit:
     surface, for a trajectory (.json or .csv) it is the scene. One of the two may be -, for standard
     input.
     """
-    begun = time.monotonic()
     if given["subject"] == given["claim"] == "-":
         raise click.UsageError("only one of the two can be standard input (-)")
 
     from cellcolor.cli.checking import Request, check_files
 
-    deadline = Deadline.after(seconds, begun)
-    return check_files(Request(seconds=seconds, deadline=deadline, **given))
+    return check_files(Request(seconds=seconds, deadline=Deadline.after(seconds), **given))
 
 
 @cellcolor.command()
