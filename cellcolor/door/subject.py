@@ -19,7 +19,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.value import Drawn, read_one_of
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of, locate
-from cellcolor.decomposition.same_graph import wrong_cell
+from cellcolor.decomposition.on_mesh import wrong_cell
 from cellcolor.door.installed import extras_for, find_file
 from cellcolor.errors import InputError, naming
 from cellcolor.files.writing import Output, path_of, write

@@ -311,7 +311,7 @@ def _judged(prepared: PreparedScene, clock: StageClock) -> tuple[Verdicts, Mask,
     are continuous, and which of them are valid between the vertices as well."""
     verdicts = judged_at_vertices(prepared, clock)
     with clock.timed("continuity"):
-        edges = prepared.surface.edges()
+        edges = prepared.surface.mesh.edges
         continuous = continuous_along(prepared, edges, verdicts, clock.deadline)
     with clock.timed("validity between vertices"):
         linked = valid_along(prepared, verdicts, continuous, clock.deadline)
@@ -338,11 +338,11 @@ def colored(
     """
     surface, branches = prepared.surface, prepared.arm.kinematics.branches
     with clock.timed("colors and cracks"):
-        edges, policy, report = surface.edges(), prepared.setup.slivers, None
+        edges, policy, report = surface.mesh.edges, prepared.setup.slivers, None
         coloring = all_colors = color_nodes(verdicts.valid, edges, linked, branches)
         clock.deadline.check()
         if policy is not None:
-            areas = surface.vertex_areas()
+            areas = surface.mesh.vertex_areas
             kept, report = clean(edges, all_colors, areas, policy, clock.deadline)
             coloring = color_nodes(kept, edges, linked & kept[edges].all(axis=1), branches)
     clock.begin("surface")
@@ -378,7 +378,7 @@ def _limited(prepared: PreparedScene, verdicts: Verdicts, coloring: Coloring) ->
     if not prepared.setup.constraints.collision:  # joint limits are not asked about either
         nowhere = np.full(robot.joints, np.inf)
         robot = replace(robot, lower=-nowhere, upper=nowhere)
-    return limit_colors(robot, coloring, verdicts.configurations, prepared.surface.edges())
+    return limit_colors(robot, coloring, verdicts.configurations, prepared.surface.mesh.edges)
 
 
 def _vertex_colors(limits: LimitColors, vertices: int) -> tuple[tuple[int, ...], ...]:

@@ -139,7 +139,7 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     covered = scene.covered(deadline)
     surface, reach = covered.placed(scene.placement), arm.kinematics.reach
     check_part(surface, scene, reach, arm.robot.base_frame(None)[:3, 3])
-    lengths = surface.lengths(surface.edges())
+    lengths = surface.lengths(surface.mesh.edges)
     with naming(setup.file):
         check_setup(setup, surface, scene, reach)
         for key in ("probe_spacing_m", "validity_spacing_m"):

@@ -117,7 +117,7 @@ def _refused(painted: Painted, finer: BuildResult, branch: Index) -> tuple[int, 
     own = np.array([-1 if color is None else branch[color] for color in colors])
     colored = np.flatnonzero(own >= 0)
     refused = set(colored[~finer.verdicts.valid[colored, own[colored]]].tolist())
-    edges, linked = finer.prepared.surface.edges(), finer.all_colors.linked
+    edges, linked = finer.prepared.surface.mesh.edges, finer.all_colors.linked
     segment = painted.segment_of
     within = np.flatnonzero(
         (segment[edges[:, 0]] == segment[edges[:, 1]]) & (own[edges[:, 0]] >= 0)

@@ -125,25 +125,6 @@ def test_a_path_that_changes_its_color_in_contact() -> None:
     assert said.endswith(" of color in contact")
 
 
-def test_a_path_with_fewer_strokes_than_its_colors_have_segments() -> None:
-    """All vertices of one color in one stroke, wherever they are: the path leaps."""
-    plan = Plan(tuple([own[-1] if own else None for own in scene().surface.vertex_colors]))
-    of_plan = the_oracle().judge(plan)
-    joints = joints_of(scene(), plan)
-    colors = sorted({color for color in plan.vertex_colors if color is not None})
-    rows, contact = [], []
-    for color in colors:
-        own = [vertex for vertex, other in enumerate(plan.vertex_colors) if other == color]
-        rows += [*own, own[-1]]
-        contact += [True] * len(own) + [False]
-    verdict = the_oracle().judge(cellcolor.ContactPath(joints[rows], contact=np.array(contact)))
-    assert of_plan.segments is not None and len(colors) < of_plan.segments
-    assert (verdict.strokes, verdict.color_changes) == (len(colors), 0)
-    assert verdict.needed == verdict.segments == of_plan.segments
-    assert verdict.beatable_by == of_plan.beatable_by
-    assert "its strokes are fewer than these segments" in str(verdict)
-
-
 def test_a_path_that_leaves_vertices_out_is_not_compared() -> None:
     path, vertices = walk_of(scene(), best())
     out = set(reached()[4:9])

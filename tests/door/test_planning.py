@@ -12,7 +12,6 @@ import cellcolor
 import cellcolor.frontend.prepared
 from cellcolor.arrays import Array
 from cellcolor.door.planned import KINDS
-from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.ways import Transfer, Ways
 
@@ -107,17 +106,6 @@ def test_what_was_given_up_is_said_beside_what_is_covered() -> None:
     assert any(share in note and "sliver policy" in note for note in planned.verdict.notes)
     assert f"slivers: {planned.instance.coverage}" in str(planned)
     assert f"{share} of the surface given up as slivers" in planned.page().decode()
-
-
-def test_what_is_wrong_is_said_at_once() -> None:
-    with pytest.raises(InputError, match="is no scene"):
-        cellcolor.plan("wok.json")
-    with pytest.raises(InputError, match=r"motion\.wide"):
-        cellcolor.plan("wok", wide=0.1)
-    with pytest.raises(InputError, match="zigzag"):
-        cellcolor.plan("wok", pattern="zigzag")
-    with pytest.raises(InputError, match="time_limit"):
-        cellcolor.plan("wok", time_limit=-1)
 
 
 @pytest.mark.second

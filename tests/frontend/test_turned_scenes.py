@@ -74,7 +74,7 @@ def test_scenes_with_a_free_turn_know_nothing_of_it() -> None:
 def test_no_edge_through_a_place_without_a_turn_is_linked() -> None:
     """Over it the tool would have to turn by half a circle at once."""
     free = prepare(plate(setup(None)))
-    edges = free.surface.edges()
+    edges = free.surface.mesh.edges
     inner = int(np.argmin(np.abs(free.surface.vertices[edges].mean(axis=1)[:, 1])))
     i, j = edges[inner].tolist()
     x, y, _ = free.surface.vertices[[i, j]].mean(axis=0).tolist()

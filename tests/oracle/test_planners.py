@@ -10,7 +10,6 @@ from planners import (
     configurations_of,
     largest_set_first,
     nearest_along_raster,
-    random_branches,
 )
 
 import cellcolor
@@ -40,23 +39,6 @@ def test_figure_1_greedy_pays_a_lift_off() -> None:
     assert judge.judge(greedy).lift_offs == 2
     painted = [green if green in own else blue for own in surface.vertex_colors]
     assert judge.judge(painted).lift_offs == 1 == judge.bounds.lower - 1
-
-
-def test_a_crack_ends_a_set() -> None:
-    """Red reaches all six vertices, but four at once at most; blue reaches five at once."""
-    surface = drawn("RPP PPP", LABELS, [(0, 1, RED), (1, 3, RED), (3, 4, RED)])
-    assert largest_set_first(surface) == [RED] + [BLUE] * 5
-
-
-def test_majorities_mend_what_was_drawn() -> None:
-    """Where both colors reach everything, no vertex is left with most neighbors in the other."""
-    surface = drawn(" ".join(["P" * 8] * 8), LABELS)
-    colors = random_branches(surface, np.random.default_rng(0))
-    assert set(colors) == {RED, BLUE}
-    for vertex, color in enumerate(colors):
-        near = {b for a, b in surface.left_of if a == vertex}
-        near |= {a for a, b in surface.left_of if b == vertex}
-        assert 2 * sum(colors[other] == color for other in near) >= len(near)
 
 
 @pytest.mark.parametrize(("angle", "before"), [(0.0, 2), (np.pi / 2, 4)])

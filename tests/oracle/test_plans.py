@@ -83,11 +83,3 @@ def test_what_contradicts_a_verdict_is_seen() -> None:
     assert contradictions(oracle, colors, replace(verdict, improvement=None), 1)
     refused = oracle.judge([BLUE] * 18)
     assert contradictions(oracle, colors, refused, 1)[0].startswith("refused: not valid")
-
-
-def test_arrays_that_cannot_hold_colors_are_refused_by_their_type() -> None:
-    """An array with NaN for none is one of floats, and its first entry is not what is wrong."""
-    with pytest.raises(cellcolor.errors.InputError) as found:
-        cellcolor.Oracle(ROW).judge(np.array([0.0] * 17 + [np.nan]))
-    expected = "vertex_colors: must be color numbers (-1 for none) or names, is an array of float64"
-    assert str(found.value) == expected

@@ -9,7 +9,7 @@ import numpy as np
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.lab.families.meshes import Topology, crack_paths, make_mesh
-from cellcolor.mesh.oriented import directed_edges
+from cellcolor.mesh.triangle_mesh import directed_edges
 
 Regions = list[int]
 """The Voronoi region of each vertex."""

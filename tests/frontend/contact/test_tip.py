@@ -98,7 +98,7 @@ def test_a_post_between_two_vertices_is_met(robot: Robot) -> None:
     flat, faces = disc_mesh(37, 0.0, 0)
     vertices = 0.1 * np.column_stack([flat, np.zeros(len(flat))])
     surface = Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (len(flat), 1)))
-    edges = surface.edges()
+    edges = surface.mesh.edges
     posts = [
         SphereObstacle(kind="sphere", radius_m=0.004, position_m=place)
         for place in ((0.021, 0.017, 0.0), (-0.05, 0.015, 0.006), (0.0, -0.0405, -0.004))

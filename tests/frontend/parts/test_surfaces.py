@@ -107,8 +107,8 @@ def test_cap(half_angle: float) -> None:
     mesh = trimesh.Trimesh(cap.vertices, cap.faces, process=False)
     assert ((mesh.face_normals * mesh.triangles_center).sum(axis=1) > 0).all()
     assert mesh.area == pytest.approx(2 * np.pi * 0.2**2 * (1 - np.cos(half_angle)), rel=0.01)
-    assert cap.vertex_areas().sum() == pytest.approx(mesh.area)
-    assert np.array_equal(cap.edges(), np.unique(np.sort(mesh.edges_unique, axis=1), axis=0))
+    assert cap.mesh.vertex_areas.sum() == pytest.approx(mesh.area)
+    assert np.array_equal(cap.mesh.edges, np.unique(np.sort(mesh.edges_unique, axis=1), axis=0))
 
 
 def test_placement_is_extrinsic_xyz() -> None:

@@ -15,6 +15,7 @@ from cellcolor.frontend.parts.shapes import grid_mesh, rectangle
 from cellcolor.frontend.reach.continuity import Coloring, color_nodes
 from cellcolor.frontend.reach.slivers import SliverReport, _cells, clean
 from cellcolor.frontend.setup import Slivers
+from examples import examples
 
 
 def row(*sets: str) -> tuple[Array, Array, Coloring]:
@@ -123,6 +124,7 @@ def rescanned(
     return np.array(kept), simplified, len(small)
 
 
+@examples(20)
 @given(
     st.integers(0, 2**32 - 1), st.sampled_from([30, 120]), st.sampled_from([0.0, 0.02, 0.2]),
     st.sampled_from([0.02, 0.1, 0.5]), st.booleans(),
@@ -136,7 +138,7 @@ def test_like_looking_at_all_cells_again(
     x, y = surface.vertices[:, :2].T
     waves = [np.sin(rng.uniform(2, 9) * x + rng.uniform(0, 9) * y + phase) for phase in range(4)]
     nodes = np.stack(waves, axis=1) + noisy * rng.standard_normal((len(x), 4)) > -0.3
-    edges = surface.edges()
+    edges = surface.mesh.edges
     linked = nodes[edges[:, 0]] & nodes[edges[:, 1]] & (rng.random((len(edges), 4)) >= cracked)
     names = ("a", "b", "c", "d")
     coloring = color_nodes(nodes, edges, linked, names)
