@@ -103,14 +103,6 @@ def test_planted_branches_are_found(seed: int, columns: int, rows: int, branches
     check_planted(seed, columns, rows, branches)
 
 
-@pytest.mark.slow
-def test_planted_branches_of_2000_surfaces(record_property: pytest.RecordProperty) -> None:
-    rng = np.random.default_rng(0)
-    for seed in range(2000):
-        check_planted(seed, *rng.integers((2, 2, 1), (6, 5, 4)).tolist())
-        record_property("surfaces", seed + 1)
-
-
 def check_planted(seed: int, columns: int, rows: int, branches: int) -> None:
     """Branches that are far apart, each at some vertices; the minimum against brute force over the
     colorings of the planted surface."""
@@ -232,20 +224,6 @@ def test_the_caller_settles_what_is_doubtful() -> None:
     assert "3 of 5 mesh edges doubtful (60.0%)" in str(without)
     (note,) = cellcolor.solve(without.surface).solution.notes
     assert "3 mesh edges of its surface are doubtful" in note
-
-
-def test_what_was_found_twice_counts_once() -> None:
-    """A solver from several seeds finds a solution again, some circles away or a little off."""
-    vertices, faces = plate(2, 2)
-    once = [np.array([[0.1 * v, 1.0], [0.1 * v + 2, -1.0]]) for v in range(4)]
-    again = [np.concatenate([own, own[::-1] + CIRCLE + 3e-5, own[:1]]) for own in once]
-    found = from_configurations(vertices, faces, again)
-    assert not found.doubtful
-    assert (
-        found.surface.vertex_colors
-        == from_configurations(vertices, faces, once).surface.vertex_colors
-    )
-    assert [own.tolist() for own in found.color_of] == [[0, 1, 1, 0, 0]] * 4
 
 
 def test_a_number_does_not_make_two_colors_one() -> None:

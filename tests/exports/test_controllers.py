@@ -207,12 +207,6 @@ def test_a_stretch_that_begins_in_contact_presses_from_there() -> None:
     assert second[0].kind == "press"
 
 
-@pytest.mark.parametrize("name", ["cellcolor.script", "cellcolor_linear.script"])
-def test_without_a_force_none_is_pressed(name: str) -> None:
-    text = exported(on_the_wok(force_n=0.0))[name].decode()
-    assert "force_mode" not in text and "pressing" not in text
-
-
 def test_krl_is_never_faster_than_planned_by_more_than_its_smallest_speed() -> None:
     planned = driven("kr6", step_s=0.05)
     found, top = read("cellcolor.src", planned), np.array([360, 300, 360, 381, 388, 615])

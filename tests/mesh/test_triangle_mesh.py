@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from triangles import any_meshes, bumpy_ball
 
-from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 SEEDS = st.integers(0, 10**6)
 
@@ -75,17 +75,6 @@ def test_parts_are_those_of_a_graph_of_triangles(mesh: TriangleMesh, data: st.Da
         for number, members in enumerate(nx.connected_components(graph)):
             number_of[list(members)] = number
         assert same_groups(mesh.parts(barred), number_of)
-
-
-@given(st.integers(1, 9), st.data())
-def test_grouped_by_pairs(count: int, data: st.DataObject) -> None:
-    things = st.integers(0, count - 1)
-    pairs = data.draw(st.lists(st.tuples(things, things)))
-    graph = nx.empty_graph(count)
-    graph.add_edges_from(pairs)
-    found = grouped(count, np.array(pairs, dtype=np.int64).reshape(-1, 2))
-    expected = {frozenset(members) for members in nx.connected_components(graph)}
-    assert {frozenset(np.flatnonzero(found == k).tolist()) for k in found} == expected
 
 
 @given(any_meshes())

@@ -88,15 +88,6 @@ def test_it_is_refused_before_colors_are_computed() -> None:
     assert stages == ["preparation"]
 
 
-def test_a_free_home_is_found_on_request_and_is_clear_of_everything() -> None:
-    scene = shipped("wok", 100)
-    setup = scene.setup.varied(motion={"home_rad": "free"}, file=scene.setup.file)
-    prepared = prepare(scene.with_setup(setup))
-    home = home_of(prepared, motion_of(prepared))
-    assert home is not None
-    assert FreeSpace(prepared, motion_of(prepared).clearance_m)(home[None])[0]
-
-
 def test_links_that_are_never_apart_by_the_clearance_do_not_block_the_arm() -> None:
     """An IRB 120 has its tool within a centimeter of the link behind the flange, however it is."""
     prepared = prepare(Scene.read(ROBOTS.parents[1] / "instances/arms/irb120_half_pipe.toml"))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,13 +13,10 @@ from motions import Planned, planned_scene, ring_scene
 from cellcolor.deadline import NEVER
 from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.motion.following import follow, joint_space, sampled
 from cellcolor.motion.segment import _refuse_what_is_beyond
 from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.windings import Steps, walls_of
-from cellcolor.tool_paths.cover import cover
 from cellcolor.tool_paths.measures import in_all
-from cellcolor.tool_paths.region import Segments
 
 pytestmark = pytest.mark.second
 
@@ -29,27 +25,6 @@ pytestmark = pytest.mark.second
 def ring() -> Planned:
     """A motion over the ring."""
     return planned_scene(ring_scene(np.deg2rad(200)))
-
-
-def test_a_path_without_walls_overruns_the_first_joint(ring: Planned) -> None:
-    motion = ring.prepared.setup.motion
-    assert motion is not None
-    (color,) = {color for color in ring.painted.plan.vertex_colors if color is not None}
-    covered = cover(
-        Segments(
-            replace(ring.painted.surface, cracks=()), ring.painted.segment_of, [color], ring.normals
-        ),
-        spacing_m=motion.spacing_m,
-        tool_radius_m=motion.tool_radius_m,
-    )
-    (path,) = covered.paths.paths
-    branch = ring.built.color_branch[color]
-    followed = follow(ring.prepared, sampled(path), branch)
-    assert followed.good
-    assert not joint_space(ring.prepared).fits(followed.joints)
-    turned = np.ptp(followed.joints, axis=0)
-    assert turned[0] > np.deg2rad(400)
-    assert (turned[1:] < np.pi).all()
 
 
 def test_the_chosen_path_stays_in_the_limits_without_a_lift_off(ring: Planned) -> None:
@@ -74,14 +49,6 @@ def test_cracks_of_the_color_open_the_ring_and_do_not_part_it(ring: Planned) -> 
     for cycle in nx.cycle_basis(graph):
         steps = np.diff(polar[[*cycle, cycle[0]]])
         assert np.abs((np.remainder(steps + np.pi, 2 * np.pi) - np.pi).sum()) < 1e-6
-
-
-@pytest.mark.slow
-def test_there_are_no_walls_where_the_limits_allow_the_path_as_it_is() -> None:
-    ring = planned_scene(ring_scene(np.deg2rad(20 * 360)))
-    assert ring.plan.walls == ()
-    assert ring.plan.trajectory.lift_offs == 0
-    assert np.ptp(ring.plan.trajectory.joints[:, 0]) > 2.2 * np.pi
 
 
 def around_the_base(wide: float) -> tuple[Steps, TriangleMesh]:

@@ -53,21 +53,6 @@ def test_one_edge_between_two_cells_with_a_crack() -> None:
     assert finer.cracks == (Crack(2, 4, (0,)), Crack(2, 5, (0,)))
 
 
-def test_unreachable_and_given_up_vertices_are_copied_as_such() -> None:
-    triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
-    surface = LabelledSurface(
-        "triangle", ("a",), triangle, [[0, 1, 2]], ((), (), (0,)), given_up=(1,)
-    )
-    finer = unrefined(surface).halved(np.array([False, True, False])).surface()
-    assert finer.vertex_colors == ((), (), (0,), (), ())
-    assert finer.given_up == (1, 3, 4)
-
-
-def test_without_marks_it_is_the_surface_itself() -> None:
-    surface = voronoi(1, "disc", size=8, regions=5, colors=2)
-    assert unrefined(surface).surface() is surface
-
-
 def test_values_of_vertices_reach_the_new_ones() -> None:
     """By hand, two rounds: numbers, and rows of any shape."""
     triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]

@@ -57,25 +57,6 @@ def test_what_crosses_is_refused() -> None:
         trees(7, [[0, 48], [6, 42]])
 
 
-def test_too_few_rows_are_refused() -> None:
-    # Three rows hold two nested trees over a middle one, two rows do not.
-    found = grown(range(21), _strip(3), [[1, 5], [2, 4], [3]])
-    assert len(set(found.values())) == 3
-    with pytest.raises(TooNarrow):
-        grown(range(14), _strip(2), [[1, 5], [2, 4], [3]])
-
-
-def _strip(rows: int) -> ClosedMesh:
-    places = [[x, y, 0.0] for y in range(rows) for x in range(7)]
-    vertices, faces = np.array(places), np.array(grid_faces(rows, 7))
-    return ClosedMesh(LabelledSurface("strip", ("a",), vertices, faces, ((0,),) * len(places)))
-
-
-def test_one_vertex_for_two_is_refused() -> None:
-    with pytest.raises(TooNarrow):
-        trees(7, [[1, 5], [5, 6]])
-
-
 def without(size: int, low: int, high: int) -> list[int]:
     """The vertices of a square grid with a square hole, both ends of its rows included."""
     hole = {(x, y) for x in range(low, high + 1) for y in range(low, high + 1)}
@@ -125,14 +106,6 @@ def test_a_tree_goes_round_the_free_end_of_a_crack() -> None:
         while more := {b for a, b in pairs if a in reached} - reached:
             reached |= more
         assert reached == own
-
-
-def test_a_way_across_leaves_the_other_one_room() -> None:
-    """Two sub-cells both reach a hole; the first must not shut the second one in."""
-    inside = [v for v in range(49) if v not in (16, 17, 18, 23, 24, 25, 30, 31, 32)]
-    # 8 and 9 are on the hole's lower left, 0 and 1 on the outer border.
-    found = grown(inside, grid(7), [[0, 15], [1, 9], [48, 40]])
-    assert all(connected(7, found, number) for number in range(3))
 
 
 def test_trees_end_with_their_deadline() -> None:

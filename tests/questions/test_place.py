@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from concurrent.futures import Future
+from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -19,8 +18,6 @@ import cellcolor
 from cellcolor.deadline import NEVER
 from cellcolor.frontend import Scene
 from cellcolor.frontend.parts.placement import Placement
-from cellcolor.lab.workers import Task, Workers
-from cellcolor.processes import Ended
 from cellcolor.questions.placements import (
     VARIABLES,
     PlacedMinimum,
@@ -124,64 +121,10 @@ def test_bounds_lie_on_their_sides_of_what_a_whole_build_finds() -> None:
     assert tight  # else any number would do
 
 
-def test_bounds_change_nothing_but_the_number_of_whole_builds(
-    found: Placements, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    built: list[int] = []
-
-    def ask_whole(*given: Any) -> list[PlacedMinimum]:
-        built.append(len(given[1]))
-        return minima_at(*given[:6])
-
-    monkeypatch.setattr("cellcolor.questions.placing.minima_at", ask_whole)
-    without = place()
-    assert (without.here, without.best) == (found.here, found.best)
-    assert [row.pose for row in without.tried[:11]] == [row.pose for row in found.tried[:11]]
-    aside = [row for row in found.tried if row.at_least]
-    assert aside and all("at most" in str(row) and row.segments is None for row in aside)
-    assert f"{len(aside)} left aside by bounds" in str(found)
-
-
-def test_where_nothing_covers_enough_the_most_is_said() -> None:
-    found = place(cover=1.0, points=2, best=1)
-    most = max((found.here, *found.best), key=lambda row: row.covered_share)
-    assert 0.5 < most.covered_share < 1
-    share = str(found).partition("--cover ")[2].split()[0]
-    assert most.covered_share - 0.001 < float(share) <= most.covered_share
-    again = place(cover=float(share), points=2, best=1)
-    assert "no placement" not in str(again) or most.pose == again.here.pose
-
-
-def test_what_is_listed_is_in_the_ranges_although_the_scene_is_not() -> None:
-    """The part stands at x = 0.465 m."""
-    found = place(x=(0.3, 0.36), y=None, cover=0.5)
-    assert found.best
-    assert found.here.pose[0] == pytest.approx(0.465)
-    # The first one tried is the scene's own placement, on the coarse mesh.
-    assert all(0.3 <= row.pose[0] <= 0.36 for row in (*found.best, *found.tried[1:]))
-
-
 def test_nothing_is_listed_where_the_arm_does_not_reach(capsys: pytest.CaptureFixture[str]) -> None:
     options = ("--points", "2", "--vertices", "50", "--cover", "0.5")
     assert run("place", "wok_obstacle", "--x", "5,6", *options) == 3
     assert "no placement that was tried covers" in capsys.readouterr().out
-
-
-@pytest.mark.slow
-def test_two_processes_find_the_same(found: Placements) -> None:
-    other = place(jobs=2)
-    assert list(other) == list(found)
-
-
-def test_where_the_part_cannot_stand_the_row_says_why() -> None:
-    scene = shipped("wok", 60)
-    here: Pose = (*scene.placement.position_m, *scene.placement.rpy_rad)
-    within = (0.0, 0.0, -0.15, 0.0, 0.0, 0.0)  # its top in the base
-    rows = minima_at(scene, [within, here, within, here], np.inf, 1, 0)
-    assert [bool(row.refused) for row in rows] == [True, False, True, False]
-    assert "stands in the robot's" in rows[0].refused and rows[0] == rows[2]
-    assert rows[1] == rows[3] and rows[1].segments == by_hand(scene)[0]
-    assert rows[0].rank(0.0) > rows[1].rank(0.0) and rows[0].lift_offs is None
 
 
 def test_a_part_does_not_stand_in_the_ground_or_in_an_obstacle() -> None:
@@ -208,46 +151,6 @@ def test_where_the_scene_has_it_in_the_base_the_share_has_to_be_said() -> None:
     assert caught.value.field == "cover" and "stands in the robot's" in str(caught.value)
     found = cellcolor.place(scene.varied(ground=None), **asked, cover=0.2, vertices=60)
     assert found.here.refused and found.best[0].covered_share >= 0.2
-
-
-class Losing(Workers):
-    """Workers that lose the first pieces of work, as a process that is killed does."""
-
-    slots = 2
-
-    def __init__(self, lost: int) -> None:
-        self.lost = lost
-
-    def submit(self, task: Task, /) -> Future[Ended]:
-        future: Future[Ended] = Future()
-        self.lost -= 1
-        if self.lost >= 0:
-            future.set_result(Ended("crashed", error="killed"))
-        else:
-            future.set_result(Ended("done", task.function(*task.arguments)))
-        return future
-
-    def __exit__(self, *_: object) -> None:
-        """Nothing is left to end."""
-
-
-@pytest.mark.slow
-def test_a_lost_process_loses_no_placement(found: Placements) -> None:
-    assert list(place(jobs=Losing(1))) == list(found)
-    with pytest.raises(cellcolor.CellcolorError, match="could not be tried: killed"):
-        place(jobs=Losing(10**6))
-
-
-def counted(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """How many placements are built whole from now on, in one process."""
-    asked: list[int] = []
-
-    def ask(scene: Scene, poses: Sequence[Pose], *others: Any) -> list[PlacedMinimum]:
-        asked.append(len(poses) if others[-1] is None else 0)  # bounds are computed again
-        return minima_at(scene, poses, *others)
-
-    monkeypatch.setattr("cellcolor.questions.placing.minima_at", ask)
-    return asked
 
 
 def test_how_far_a_placement_may_be_off(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -189,6 +189,13 @@ def _jump(honest: Honest, random: Random) -> Trajectory:
     return honest.posed(joints)
 
 
+def _exchanged(honest: Honest, random: Random) -> Trajectory:
+    joints = honest.trajectory.joints.copy()
+    i, j = random.choice(joints.shape[1], 2, replace=False)
+    joints[:, [i, j]] = joints[:, [j, i]]
+    return replace(honest.trajectory, joints=joints)
+
+
 def _reversed_stroke(honest: Honest, random: Random) -> Trajectory:
     first, after = honest.stroke(random)
     rows = np.arange(len(honest.trajectory.times))
@@ -359,6 +366,7 @@ FORGERS: dict[str, Forger] = {
     "a part of a stroke in another branch": _other_branch,
     "a joint three turns farther": _over_limit,
     "a jump by a full circle": _jump,
+    "two columns of joints exchanged": _exchanged,
     "repeated stated, but not driven twice": lambda h, r: replace(
         _twice(h, r), repeated=(RepeatedStretch(0, 1, "x"),)),
 }  # fmt: skip

@@ -14,7 +14,7 @@ from world import KINDS, World, standing
 
 from cellcolor.arrays import Array
 from cellcolor.data.surface import Crack
-from cellcolor.data.trajectory import ExtraLiftOff, Trajectory
+from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import prepare
@@ -46,17 +46,6 @@ def middle() -> int:
     """A sample in the middle of the first stroke."""
     first, after = rasters.cap()[2].strokes[0]
     return (first + after) // 2
-
-
-def test_counts() -> None:
-    trajectory = rasters.cap()[2]
-    stated = ExtraLiftOff(trajectory.strokes[0][1] - 1, 0, "winding", "", (0.0, 0.0, 0.0))
-    verdict = judged(trajectory, minimum_lift_offs=0)
-    assert (verdict.strokes, verdict.lift_offs, verdict.unclaimed_extra) == (2, 1, 1)
-    assert judged(trajectory).unclaimed_extra is None
-    verdict = judged(replace(trajectory, extra_lift_offs=(stated,)), minimum_lift_offs=0)
-    assert verdict.valid
-    assert (verdict.claimed_extra, verdict.unclaimed_extra) == (1, 0)
 
 
 def test_a_move_that_was_not_planned() -> None:
@@ -272,20 +261,6 @@ def test_the_area_of_a_flat_raster() -> None:
     assert covered.length_m == pytest.approx(steps[both].sum(), rel=1e-6)
 
 
-def test_shares_as_by_hand_on_a_flat_square() -> None:
-    """Half of the lines left out: covered is what is so far from the last one."""
-    prepared, built, trajectory = rasters.square()
-    kept = trajectory.contact & (trajectory.points[:, 1] < np.median(trajectory.points[:, 1]))
-    half = replace(trajectory, contact=kept)
-    covered = check_trajectory(built, half).covered
-    assert covered is not None
-    # The rectangle is 0.12 m wide.
-    last = trajectory.points[kept, 1].max()
-    low = prepared.surface.vertices[:, 1].min()
-    for share, factor in ((covered.covered_share, 1.5), (covered.closely_covered_share, 0.75)):
-        assert share == pytest.approx((last - low + factor * 0.01) / 0.12, abs=0.01)
-
-
 def test_another_arms_trajectory_is_refused() -> None:
     trajectory = rasters.cap()[2]
     other = replace(trajectory, joint_names=tuple("abcdef"))
@@ -312,6 +287,7 @@ def test_two_meshes_are_refused() -> None:
         check_trajectory(replace(built, prepared=finer), trajectory)
 
 
+@pytest.mark.second
 @pytest.mark.parametrize(("margin", "kept"), [(0.0095, True), (0.0105, False)])
 def test_the_tool_keeps_its_margin_to_the_object(margin: float, kept: bool) -> None:
     """Its body ends 10 mm above the tip, which is on a flat square, and is flat itself."""

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import rasters
 from forged_drives import FORGERS
-from honest_drives import HONEST, Honest, dropped_stroke, resampled
+from honest_drives import HONEST, Honest, resampled
 from hypothesis import given
 from hypothesis import strategies as st
 from motions import planned
@@ -35,6 +35,17 @@ NOT_HERE = (
     "a row doubled 0.1 s later at full speed",  # it is so slow that the arm can stop
     "10% of a stroke dropped",  # so little is never missed on this part
 )
+# What some of them are called by the judge; the others are told by several kinds.
+KINDS = {
+    "a joint three turns farther": "joint limit",
+    "a jump by a full circle": "jump",
+    "a stretch twice": "repeated",
+    "a part of a stroke in another branch": "branch",
+    "a stroke dropped": "uncovered",
+    "points off by 0.01": "pose",
+    "two columns of joints exchanged": "pose",
+    "time backwards": "time",
+}
 
 
 @cache
@@ -56,7 +67,9 @@ def test_honest_drives_stay_valid(name: str) -> None:
 
 @pytest.mark.parametrize("name", [name for name in FORGERS if name not in NOT_HERE])
 def test_forged_drives_are_refused(name: str) -> None:
-    assert not judged(FORGERS[name](cap(), np.random.default_rng(3))).valid
+    verdict = judged(FORGERS[name](cap(), np.random.default_rng(3)))
+    assert not verdict.valid
+    assert name not in KINDS or KINDS[name] in verdict.fault_counts
 
 
 @pytest.mark.slow
@@ -68,21 +81,6 @@ def test_forged_plans_are_refused(name: str) -> None:
         forged = FORGERS[name](honest, np.random.default_rng(seed))
         verdict = check_trajectory(made.built, forged, minimum_lift_offs=made.lift_offs)
         assert not verdict.valid, seed
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "scene", ["wok", "wok_obstacle", "hemisphere_flat", "hemisphere_tilted", "half_pipe", "square"]
-)
-def test_every_stroke_of_a_plan_is_missed(scene: str) -> None:
-    made = planned(scene, 1000)
-    honest = Honest(made.prepared, made.plan.trajectory, made.lift_offs)
-    strokes = len(honest.trajectory.strokes)
-    assert check_trajectory(made.built, honest.trajectory, minimum_lift_offs=made.lift_offs).valid
-    for number in range(strokes):
-        # The number of lift-offs is not what tells it: without a known minimum it is refused, too.
-        verdict = check_trajectory(made.built, dropped_stroke(honest, number))
-        assert verdict.of_kind("uncovered"), number
 
 
 @pytest.mark.second
@@ -102,13 +100,13 @@ def test_the_campaign_says_what_was_accepted(
     monkeypatch.setattr(judge, "HONEST", {"as it is": HONEST["as it is"]})
     few = {name: FORGERS[name] for name in ("a move not planned", "time backwards")}
     monkeypatch.setattr(judge, "FORGERS", few)
-    assert judge.main(["forged", "2"]) == 0
+    assert judge.main(["2"]) == 0
     out = capsys.readouterr().out
     assert "honest: 1 of 1 accepted" in out and "a stroke dropped: 2 of 2 refused" in out
     assert "| all 2 | 2 | 2 |" in out
     same = {"none": FORGERS["10% of a stroke dropped"], "same": lambda h, _: h.trajectory}
     monkeypatch.setattr(judge, "FORGERS", same)
-    assert judge.main(["forged", "4"]) == 1
+    assert judge.main(["4"]) == 1
     out = capsys.readouterr().out
     assert out.count("not refused: same, draw ") == 2 and "draw 1" in out and "draw 3" in out
     assert "| none | 0 | 0 |" in out and "| all 2 | 2 | 0 |" in out
@@ -131,14 +129,6 @@ def test_a_dragged_tip_is_found_and_covers_nothing() -> None:
     assert len(verdict.of_kind("dragged")) == 2
     assert verdict.covered is not None
     assert verdict.covered.covered_share == 0.0
-
-
-def test_what_only_says_that_it_touches_covers_nothing() -> None:
-    above = FORGERS["20 mm above, 100% of a stroke"](cap(), np.random.default_rng(0))
-    verdict, whole = judged(above), judged(cap().trajectory)
-    assert verdict.covered is not None
-    assert whole.covered is not None
-    assert verdict.covered.covered_share < 0.75 * whole.covered.covered_share
 
 
 @pytest.mark.slow

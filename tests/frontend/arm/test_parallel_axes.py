@@ -19,10 +19,9 @@ from vertex_minima import vertex_minimum
 
 import cellcolor
 from cellcolor.arrays import Array
-from cellcolor.configurations.matching import stays_within
 from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
-from cellcolor.frontend import BuildResult, Scene, Setup, build_surface
+from cellcolor.frontend import BuildResult, Scene, build_surface
 from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
 from cellcolor.frontend.arm.kinematics import (
     forward,
@@ -40,10 +39,7 @@ from cellcolor.frontend.arm.robot import (
 from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.reach.smooth import Measure
-from cellcolor.frontend.reach.validity import turned_into_limits
 from cellcolor.frontend.setup import RobotFiles, Turn
-from cellcolor.pictures.arm import draw_arm
 from examples import examples
 
 FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")
@@ -153,85 +149,12 @@ def test_only_points_in_the_plane_have_solutions() -> None:
     assert np.isnan(kinematics.solve(tips + np.array([2.0, 0, 0]), directions)).all()
 
 
-def test_only_turning_joints_are_modulo_full_circles() -> None:
-    robot, _ = arm("RRPR", 3)
-    robot.lower[:], robot.upper[:] = [-1, -1, 0.0, -1], [6, 6, 0.2, 6]
-    turned = turned_into_limits(robot, np.array([[-2.0, 7.0, -0.1, 0.0], [0.0, 0.0, 0.3, -6.0]]))
-    assert turned[:, 2].tolist() == [-0.1, 0.3]
-    assert turned[0] == pytest.approx([2 * np.pi - 2, 7 - 2 * np.pi, -0.1, 0])
-
-    def fits(low: float, high: float, start: float = 0.1) -> bool:
-        at, one = np.array([0.0, 0.0, start, 0.0]), np.array([0.0, 0.0, 1.0, 0.0])
-        limits, periods = (robot.lower, robot.upper), np.where(robot.slides, np.inf, 2 * np.pi)
-        return bool(stays_within(limits, at, low * one, high * one, periods))
-
-    assert fits(-0.1, 0.1) and not fits(-0.11, 0.0) and not fits(0.0, 0.11)
-    assert not fits(0.0, 0.0, start=0.1 + 2 * np.pi)
-
-
-def test_a_slide_as_far_as_the_reach_counts_as_a_radian() -> None:
-    policy = Setup.read(ROBOTS / "cobra600_dispensing.toml").continuity
-    periods, units = np.array([2 * np.pi, np.inf]), np.array([1.0, 0.5])
-    measure = Measure(policy, 0.1, 0.0, periods, units)
-    first, second = np.array([[0.1, 7.0]]), np.array([[0.1 + 2 * np.pi, 0.0]])
-    assert measure.step(first, second) == pytest.approx([7.0 / 0.5])
-
-
 # --- the shipped arms -----------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
 def built() -> BuildResult:
     return build_surface(Scene.read(COBRA).varied(object={"target_vertices": 300}))
-
-
-def expected(points: Array, share: float) -> dict[str, Array]:
-    """Where each elbow gets, by trigonometry; NaN where rounding or thresholds could decide.
-
-    Arms of 325 and 275 mm; joint 1 turns by 50 degrees to either side, joint 2 by 88. Twice the
-    triangle of shoulder, elbow and tip, the task determinant, is at least a share of the square of
-    the reach.
-    """
-    out, around = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
-    cosine = (out**2 - 0.325**2 - 0.275**2) / (2 * 0.325 * 0.275)
-    bend = np.arccos(np.clip(cosine, -1, 1))
-    ahead = np.arctan2(0.275 * np.sin(bend), 0.325 + 0.275 * np.cos(bend))
-    area = 0.325 * 0.275 * np.sin(bend)
-    found = {}
-    for name, side in (("elbow-left", 1.0), ("elbow-right", -1.0)):
-        # An elbow on the left is ahead of the tip, seen turning to the left.
-        room = np.minimum(np.radians(50) - np.abs(around + side * ahead), np.radians(88) - bend)
-        room = np.where(np.abs(cosine) < 1, np.minimum(room, area - share * 0.36), -1.0)
-        found[name] = np.where(np.abs(room) < 1e-9, np.nan, (room > 0).astype(float))
-    return found
-
-
-def test_where_each_elbow_gets_is_what_trigonometry_says(built: BuildResult) -> None:
-    """By hand: 0.23 m to either side, 0.45 m in front, is one elbow's, so two segments.
-
-    Of the first the tip is 505 mm away, at 27.1 degrees, and the elbow 29.8 ahead: 57 to one side,
-    where joint 1 ends at 50, and 3 to the other.
-    """
-    sides = expected(np.array([[0.45, 0.23, 0.1], [0.45, -0.23, 0.1], [0.45, 0.0, 0.1]]), 0.02)
-    assert sides["elbow-left"].tolist() == [0, 1, 1] and sides["elbow-right"].tolist() == [1, 0, 1]
-    points = built.surface.vertices
-    known = expected(points, 0.02)
-    for branch, name in enumerate(built.branches):
-        sure = ~np.isnan(known[name])
-        valid = built.reasons[:, branch] == VALID
-        assert sure.sum() > 290 and np.array_equal(valid[sure], known[name][sure] == 1)
-    valid = np.argwhere(built.reasons == VALID)
-    slides = built.configurations[:, :, 2][tuple(valid.T)]
-    assert np.ptp(slides) > 0.07  # the joint does move, up and down with the part
-    for vertex, branch in valid[::11]:
-        pose = tip_frame(built.robot.model, built.configurations[vertex, branch])
-        assert np.abs(pose.translation - points[vertex]).max() < 1e-9
-        assert np.abs(pose.rotation - FLIP).max() < 1e-9  # x along x, z down
-    found = cellcolor.solve(built)
-    assert found.optimal and found.solution.proved_for_surface and found.segments == 2
-    vertex, branch = valid[0]
-    slide = 1000 * built.configurations[vertex, branch, 2]
-    assert any(f"{slide:.1f} mm" in note for note in draw_arm(built, vertex, branch).notes)
 
 
 @pytest.mark.parametrize("lift", [0.12, -0.11])

@@ -4,27 +4,20 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Callable
 
 import numpy as np
 import pytest
-from reasons import Reason
 from world import PAIRS, World
 
 from cellcolor.arrays import Array, Mask
-from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, pairs_of, pairs_with
-from cellcolor.frontend.contact.obstacle import (
-    CylinderObstacle,
-)
 from cellcolor.frontend.contact.tip import HalfSpace
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.scene import Scene
 
 CONTACT = 0.0005  # m; verdicts may differ nearer to contact than this
 EXEMPT = ("base_link", "shoulder_link")
@@ -82,16 +75,6 @@ def test_a_forked_process_finds_the_same(robot: Robot, joints: Array) -> None:
         signal.alarm(60)
         os._exit(int((contacts(joints) != own).any()))
     assert os.waitpid(child, 0)[1] == 0
-
-
-def test_an_obstacle_takes_away_what_it_hits(scene: Callable[..., Scene]) -> None:
-    wok = scene(target_vertices=500)
-    free = build_surface(wok)
-    post = CylinderObstacle(radius_m=0.03, height_m=0.3, position_m=(0.205, 0.005, 0.15))
-    blocked = build_surface(wok.with_obstacle(post))
-    changed = free.reasons != blocked.reasons
-    assert (blocked.reasons[changed] == Reason.OBSTACLE_COLLISION).all()
-    assert changed.sum() == blocked.report.candidates["obstacle collision"] > 100
 
 
 def tool_down(turn: float) -> Array:

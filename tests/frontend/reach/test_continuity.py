@@ -7,14 +7,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from continuation import Follower
-from hypothesis import given
-from hypothesis import strategies as st
-from independent import shorter_way
 from reasons import Reason
 from shipped import shipped
 
 from cellcolor.arrays import Array
-from cellcolor.configurations.matching import farthest, stays_within
+from cellcolor.configurations.matching import farthest
 from cellcolor.data.surface import Crack
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.robot import Robot
@@ -42,22 +39,6 @@ POLICY = Continuity(
 
 def measure(policy: Continuity = POLICY) -> Measure:
     return Measure(policy, NEAR, lever=0.2)
-
-
-angles = st.lists(st.floats(-20, 20), min_size=6, max_size=6)
-
-
-@given(angles, angles, st.lists(st.integers(-2, 2), min_size=6, max_size=6))
-def test_a_step_is_modulo_full_circles(
-    first: list[float], second: list[float], circles: list[int]
-) -> None:
-    a, b = np.array(first), np.array(second)
-    step = farthest(a, b)
-    assert 0 <= step <= np.pi + 1e-9
-    assert farthest(a, b + 2 * np.pi * np.array(circles)) == pytest.approx(step, abs=1e-9)
-    # On the unit circle the chord tells the same angle.
-    chord = np.abs(np.exp(1j * a) - np.exp(1j * b)).max()
-    assert 2 * np.sin(step / 2) == pytest.approx(chord, abs=1e-6)
 
 
 class Plane:
@@ -207,23 +188,3 @@ def test_cracks_are_on_shared_colors_and_colors_are_injective(
         assert set(crack.colors) <= shared
     per_vertex = np.sort(around_wrist_singularities.node_color, axis=1)
     assert not ((per_vertex[:, 1:] == per_vertex[:, :-1]) & (per_vertex[:, 1:] >= 0)).any()
-
-
-@pytest.mark.parametrize(
-    ("lower", "upper", "first", "second", "fits"),
-    [
-        (-3.0, 3.0, 2.9, -2.9, False),  # the short way leads through pi
-        (-3.0, 4.0, 2.9, -2.9, True),  # it ends at 3.38
-        (-3.0, 3.0, -0.2, 0.3, True),
-        (-7.0, -5.0, 0.1, 0.4, True),  # both turned back once
-        (-6.3, 6.3, 3.1, -3.1, True),
-        (0.0, 6.2, 0.1, 6.1, False),  # the short way leads through 0
-    ],
-)
-def test_way_between_limits(
-    lower: float, upper: float, first: float, second: float, fits: bool
-) -> None:
-    low, high, still = np.full(6, lower), np.full(6, upper), (lower + upper) / 2
-    a, b = np.full(6, still), np.full(6, still)
-    a[3], b[3] = first, second
-    assert stays_within((low, high), a, *shorter_way(a, b)) == fits

@@ -15,6 +15,7 @@ from cellcolor.frontend.parts.shapes import grid_mesh, rectangle
 from cellcolor.frontend.reach.continuity import Coloring, color_nodes
 from cellcolor.frontend.reach.slivers import SliverReport, _cells, clean
 from cellcolor.frontend.setup import Slivers
+from examples import examples
 
 
 def row(*sets: str) -> tuple[Array, Array, Coloring]:
@@ -123,6 +124,7 @@ def rescanned(
     return np.array(kept), simplified, len(small)
 
 
+@examples(20)
 @given(
     st.integers(0, 2**32 - 1), st.sampled_from([30, 120]), st.sampled_from([0.0, 0.02, 0.2]),
     st.sampled_from([0.02, 0.1, 0.5]), st.booleans(),
