@@ -167,8 +167,7 @@ def check_solution(
     """Hold a solution against its instance: its division, and every number in it.
 
     Lower bounds are verified by their certificates before the deadline; those without one are taken
-    on trust (:func:`~cellcolor.checker.claimed_numbers.claims` names what is), as far as they
-    contradict nothing.
+    on trust, as far as they contradict nothing (``claimed_numbers.claims`` names them).
 
     Args:
         regions: the color regions that each cell lies in, if they are not to be read off the graph.

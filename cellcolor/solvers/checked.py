@@ -58,8 +58,7 @@ def check_able_to_list(name: str, instance: Instance) -> None:
     """Reject an instance whose optimal schemes a solver does not list.
 
     Raises:
-        InputError: there is no such solver, or a cell has several live loops and that is more
-            than it is able to do.
+        InputError: there is no such solver, or a cell has too many live loops for it.
     """
     if make_solver(name).abilities.schemes_of_several_loops:
         return

@@ -30,12 +30,7 @@ OnProgress = Callable[[int | None, int], None]
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """A legal division to start from.
-
-    Attributes:
-        division: the sub-cells of every cell, in the form of ``Solution.cells``.
-        seams: the seams that its darts refer to.
-    """
+    """A legal division to start from, in the form of ``Solution.cells``, and its seams."""
 
     division: Division
     seams: tuple[Seam, ...]
@@ -80,7 +75,7 @@ class Answer:
 
     Attributes:
         division: the best division found, None when none was found.
-        seams: the seams that its darts refer to.
+        seams: those that its darts refer to.
         bounds: what was proved about the fewest segments, and how.
         notes: what was left out and why, a sentence each, such as a model too large to be built.
         model: how large the complete model of the problem is, if one was built and solved.

@@ -32,7 +32,7 @@ def test_curves_lie_between_the_cells_of_their_edges(surface: LabelledSurface) -
     crossed = set()
     inside = len(surface.vertices)
     for edge in made.instance.edges:
-        for left, right in made.curves[edge.id].steps:
+        for left, right in made.curves[edge.id]:
             sides = [made.vertex_cell[v] if v < inside else OUTSIDE for v in (left, right)]
             assert sides == [edge.left, edge.right]
             if OUTSIDE not in sides:

@@ -9,7 +9,7 @@ code. This is on purpose: the others reveal a mistake made in only one of the th
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -116,20 +116,18 @@ def widened(
     Raises:
         TooLarge: the seams would need too many strands.
     """
-    widths: list[int] = []
-    for own in _loops(instance):
+    enough = []
+    for own in instance.live_loops:
         darts = sum(strands[abs(dart)] for loop in own for dart in loop)
-        enough = max(0, darts // 2 - (len(own) == 2))
-        widths += [enough if most is None else min(enough, most) for _ in own[1:]]
-    if sum(widths) > MOST_STRANDS:
-        message = f"{sum(widths)} strands of seams, {MOST_STRANDS} are the most"
+        enough.append(max(0, darts // 2 - (len(own) == 2)))
+    seams = tuple(
+        replace(seam, strands=enough[seam.cell] if most is None else min(enough[seam.cell], most))
+        for seam in seam_places(instance)
+    )
+    if (total := sum(seam.strands for seam in seams)) > MOST_STRANDS:
+        message = f"{total} strands of seams, {MOST_STRANDS} are the most"
         raise TooLarge(f"The model was not built: it would need {message}.")
-    return with_strands(seam_places(instance), widths)
-
-
-def with_strands(seams: Iterable[Seam], widths: Iterable[int]) -> tuple[Seam, ...]:
-    """Seams with a number of strands each."""
-    return tuple(replace(seam, strands=w) for seam, w in zip(seams, widths, strict=True))
+    return seams
 
 
 def complete_graph(instance: Instance, strands: Mapping[int, int]) -> DartGraph:

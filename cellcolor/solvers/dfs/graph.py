@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 
 from cellcolor.data.cells_and_edges import DartName, strand_of, twin
 from cellcolor.data.instance import Instance
@@ -56,15 +57,11 @@ class Graph:
     """The cells of an instance, every live edge with so many parallel strands."""
 
     def __init__(self, instance: Instance, strands: int) -> None:
-        self.instance = instance
-        self._strands = strands
+        self.instance, self._strands = instance, strands
         self._loops = instance.live_loops
         self._last_edge = max((edge.id for edge in instance.edges), default=0)
-        next_id = self._last_edge + 1
-        self._first_seam: list[int] = []
-        for loops in self._loops:
-            self._first_seam.append(next_id)
-            next_id += max(0, len(loops) - 1)
+        seams = (max(0, len(loops) - 1) for loops in self._loops)
+        self._first_seam = list(accumulate(seams, initial=self._last_edge + 1))
 
     def parts(self) -> list[list[int]]:
         """The connected parts of the graph, the cells of each in the order in which to solve them.
