@@ -278,17 +278,15 @@ def _forms(form: Any) -> TypeAdapter[Any]:
 
 
 _Three = tuple[float, float, float]
-_NUMBERS = ArrayOf(tuple[float, ...], np.float64)
 _ROWS = ArrayOf(tuple[tuple[float, ...], ...], np.float64, 0)
 THREES = ArrayOf(tuple[_Three, ...], np.float64, 3)
-_TRIPLES = ArrayOf(tuple[tuple[int, int, int], ...], np.int64, 3)
-Numbers = Annotated[NDArray[np.float64], _NUMBERS]
+Numbers = Annotated[NDArray[np.float64], ArrayOf(tuple[float, ...], np.float64)]
 Integers = Annotated[NDArray[np.int64], ArrayOf(tuple[int, ...], np.int64)]
 Truths = Annotated[NDArray[np.bool_], ArrayOf(tuple[bool, ...], np.bool_)]
 Rows = Annotated[NDArray[np.float64], _ROWS]
 RowsWithGaps = Annotated[NDArray[np.float64], ArrayOf(_ROWS.form, np.float64, 0, gaps=True)]
 RowsOfThree = Annotated[NDArray[np.float64], THREES]
-Triples = Annotated[NDArray[np.int64], _TRIPLES]
+Triples = Annotated[NDArray[np.int64], ArrayOf(tuple[tuple[int, int, int], ...], np.int64, 3)]
 
 
 def check_lengths(value: Any, names: Collection[str], length: int, of: str) -> None:

@@ -123,13 +123,9 @@ def plan(
     )
     if not ask:
         return planned
-    with clock.timed("files"):
-        files = planned.files()
-    # The page is made after the answers, in less time than all other files have taken.
-    in_time = deadline.earlier(clock.seconds["files"])
     with clock.timed("questions"):
-        answered, unanswered = _answered(ask, whole, in_time, progress)
-    return replace(planned, answered=answered, unanswered=unanswered, made=files)
+        answered, unanswered = _answered(ask, whole, deadline, progress)
+    return replace(planned, answered=answered, unanswered=unanswered)
 
 
 class _Run:

@@ -77,18 +77,9 @@ class Subject:
     def _made(self, deadline: Deadline = NEVER) -> Decomposition:
         """The decomposition of the surface, made once."""
         if self._decomposed is None:
-            self._decomposed = self.decomposed(self._reference, deadline)
+            with naming(self.path):
+                self._decomposed = decomposition_of(self.surface, self._reference, deadline)
         return self._decomposed
-
-    def decomposed(self, reference: str | None, deadline: Deadline = NEVER) -> Decomposition:
-        """The decomposition of the surface, made again; see :meth:`graph`.
-
-        Args:
-            reference: where the instance's file will say that the surface is; None leaves it out.
-            deadline: when the decomposition has to end.
-        """
-        with naming(self.path):
-            return decomposition_of(self.surface, reference, deadline)
 
     @cached_property
     def decomposition(self) -> Decomposition:

@@ -7,6 +7,7 @@ cross each other.
 from __future__ import annotations
 
 from itertools import combinations
+from typing import Any
 
 import networkx as nx
 import numpy as np
@@ -77,7 +78,7 @@ def view_of(
 
 def _way(surface: LabelledSurface, color: int, near: Mask, far: Mask) -> list[int]:
     """Vertices of a shortest way in one color from one area to another; none if there is none."""
-    graph = nx.Graph(
+    graph: nx.Graph[Any] = nx.Graph(
         (a, b)
         for a, b in surface.left_of
         if color in surface.vertex_colors[a]
@@ -87,6 +88,7 @@ def _way(surface: LabelledSurface, color: int, near: Mask, far: Mask) -> list[in
     graph.add_edges_from(("near", vertex) for vertex in np.flatnonzero(near).tolist())
     graph.add_edges_from((vertex, "far") for vertex in np.flatnonzero(far).tolist())
     try:
-        return list(nx.shortest_path(graph, "near", "far")[1:-1])
+        way: list[int] = nx.shortest_path(graph, "near", "far")[1:-1]
+        return way
     except nx.NetworkXException:  # no way, or nothing to lead from or to
         return []

@@ -37,12 +37,6 @@ def pose_document(pose: Pose) -> dict[str, Any]:
     return {"position_m": list(pose[:3]), "rpy_rad": list(pose[3:])}
 
 
-def _most_common(reasons: Counter[str]) -> str:
-    """The commonest reasons, each with its number, as in "it would stand in the ground (5)"."""
-    listed = [f"{reason} ({number})" for reason, number in reasons.most_common(_FEW)]
-    return "; ".join(listed) + "; …" * (len(reasons) > _FEW)
-
-
 @dataclass(frozen=True, kw_only=True)
 class PlacementQuestion:
     """What is asked about placements.
@@ -248,8 +242,9 @@ class Placements:
         bounded = sum(row.at_least > 0 for row in self.tried)
         lines.append(f"  {tried} tried that had to cover {asked}, {bounded} left aside by bounds")
         if refused := Counter(row.refused for row in self.tried if row.refused):
-            why = _most_common(refused)
-            lines.append(f"  in {refused.total()} of them the part cannot stand: {why}")
+            why = "; ".join(f"{reason} ({number})" for reason, number in refused.most_common(_FEW))
+            more = "; …" * (len(refused) > _FEW)
+            lines.append(f"  in {refused.total()} of them the part cannot stand: {why}{more}")
         if not self.complete:
             lines.append("  the time limit came before everything was tried")
         return "\n".join(lines)
