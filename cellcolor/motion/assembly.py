@@ -104,15 +104,8 @@ def assembled(
     """The trajectory: every stroke, and every planned motion in between, from rest to rest.
 
     Args:
-        robot: the arm.
         motion: of the setup; by the distance between passes it decides what is passed twice.
-        speeds: of the joints.
-        strokes: in their order.
         transfers: the way to the first stroke, those between strokes, and that from the last one.
-        deadline: when to give up.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     rows = _Rows()
     unplanned: dict[int, str] = {}

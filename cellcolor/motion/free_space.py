@@ -39,7 +39,6 @@ class FreeSpace:
         """Widen the arm's bodies by what they keep clear.
 
         Args:
-            prepared: the scene.
             clearance: what is kept from everything besides the setup's margins, m.
             share: how much of that is kept after all. What is free for a share is free for a
                 smaller one.

@@ -31,12 +31,8 @@ class Ground:
     """What the strokes of all segments have in common.
 
     Attributes:
-        prepared: the scene.
         segments: of the painted surface.
         states: what the arm does at the corners of its small triangles.
-        pattern: of the tool paths.
-        motion: of the setup.
-        deadline: when to give up.
     """
 
     prepared: PreparedScene
@@ -55,17 +51,9 @@ def strokes_of(
     They go beyond the segment's border if neighbors are to overlap and one stroke is enough then.
     Walls are put up only where a joint would exceed its limits without them.
 
-    Args:
-        ground: what they are made on.
-        segment: its number.
-        branch: of its color.
-
     Returns:
         Its tool paths, the strokes on them, each within the limits of the joints, and the walls,
         mesh edges, that were put up for that.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     segments, motion, space = ground.segments, ground.motion, joint_space(ground.prepared)
     own = segments.segment_of == segment

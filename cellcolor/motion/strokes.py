@@ -121,8 +121,6 @@ def trimmed(
 
     Args:
         shortest: shorter pieces are left out, m.
-        names: of the codes of the judge.
-        space: of the joints.
     """
     good = followed.reasons == VALID
     if not good.any():

@@ -87,12 +87,6 @@ class Transfers:
         These are the way to the first stroke, those between strokes, and the way from the last
         one. Without a home position the first begins, and the last ends, where the tool is
         retracted.
-
-        Args:
-            strokes: in their order.
-
-        Raises:
-            OutOfTime: the deadline came first.
         """
         reachable = [self._led(self._reachable(stroke)) for stroke in strokes]
         visits = [self._visit(one) for one in reachable]

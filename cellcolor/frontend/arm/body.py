@@ -161,7 +161,6 @@ class StandIn:
     """What collides in the place of a link's mesh.
 
     Attributes:
-        link, file: the link, and the file of its mesh.
         chosen: hull or exact.
         vertices, faces: the mesh, in the frame of the joint that carries it, m.
         body: what collides.

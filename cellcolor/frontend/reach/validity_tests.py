@@ -81,7 +81,6 @@ class Postures:
     """The arm in k configurations, all of them with a solution.
 
     Attributes:
-        workplace: where it stands.
         configurations: (k, joints) in rad, turned into the limits where possible.
         poses: of all joint frames in the world.
         linear: (k, 3, joints) how the tip moves with the joints, m per rad.
