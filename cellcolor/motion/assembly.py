@@ -133,7 +133,8 @@ def assembled(
         if stroke.segment in last_of:
             why = partings[stroke.segment].pop(0)
             last = last_of[stroke.segment]
-            extra.append(ExtraLiftOff(last, stroke.segment, why.reason, why.text, why.place))
+            x, y, z = why.place.tolist()
+            extra.append(ExtraLiftOff(last, stroke.segment, why.reason, why.text, (x, y, z)))
         begun = _add_stroke(rows, robot, stroke, motion, speeds)
         repeated += [
             RepeatedStretch(begun + a, begun + b, "beside another pass")

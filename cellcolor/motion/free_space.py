@@ -65,7 +65,7 @@ class FreeSpace:
             pairs.extend((body, thing, room) for body in own_tip)
 
         if place.ground is not None:
-            ground = place.ground.shape
+            ground = place.ground
             self._things[id(ground)] = "the ground"
             keep(ground, free, margins.to_ground_m)
         for number, obstacle in enumerate(place.obstacles):

@@ -125,7 +125,7 @@ def _between_walls(
     if joint is not None:
         text = f"{names[joint]} cannot follow the whole segment"
         for at in range(parted, len(strokes)):
-            parting = Parting.at("winding", text, strokes[at].points[0])
+            parting = Parting("winding", text, strokes[at].points[0])
             strokes[at] = replace(strokes[at], parting=parting)
     cut = [part for stroke in strokes for part in cut_where_full(stroke, space, names)]
     return covered, _worth_a_lift_off(cut, ground.motion.spacing_m), walls
@@ -141,7 +141,7 @@ def _on(ground: Ground, courses: list[Course], branch: int) -> list[Stroke]:
         parts = trimmed(segment, branch, course.samples, course.followed, spacing, names, space)
         if parts and found:
             text = "places that no sample may touch divide the segment"
-            parting = Parting.at("trimmed", text, course.path.points[0])
+            parting = Parting("trimmed", text, course.path.points[0])
             parts[0] = replace(parts[0], parting=parting)
         found += parts
     return _worth_a_lift_off(found, spacing)
