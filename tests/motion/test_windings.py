@@ -10,12 +10,9 @@ import numpy as np
 import pytest
 from motions import Planned, planned_scene, ring_scene
 
-from cellcolor.deadline import NEVER
 from cellcolor.frontend.arm.joint_space import JointSpace
-from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.segment import _refuse_what_is_beyond
 from cellcolor.motion.strokes import Stroke
-from cellcolor.motion.windings import Steps, walls_of
 from cellcolor.tool_paths.measures import in_all
 
 pytestmark = pytest.mark.second
@@ -51,37 +48,10 @@ def test_cracks_of_the_color_open_the_ring_and_do_not_part_it(ring: Planned) -> 
         assert np.abs((np.remainder(steps + np.pi, 2 * np.pi) - np.pi).sum()) < 1e-6
 
 
-def around_the_base(wide: float) -> tuple[Steps, TriangleMesh]:
-    """The module's example, a fan of four triangles; rad of a vertex each way."""
-    around = np.deg2rad([0.0, 90.0, 180.0, 270.0])
-    places = np.column_stack([np.cos(around), np.sin(around), np.zeros(4)])
-    fan = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
-    mesh = TriangleMesh(np.vstack([places, np.zeros(3)]), fan)
-    ends = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
-    angles, turns = np.deg2rad([[0.0], [90.0], [180.0], [-90.0]]), np.array([[0], [0], [1], [0]])
-    return Steps(np.arange(4), np.ones(4), angles - wide, angles + wide, ends, turns), mesh
-
-
 def turning_by(degrees: float) -> JointSpace:
     """One joint that turns so far each way."""
     limits = np.deg2rad([degrees])
     return JointSpace.of(np.zeros(1, dtype=bool), -limits, limits, 1.0)
-
-
-@pytest.mark.parametrize(
-    ("limit", "walls", "joint"),
-    [
-        (200, {(2, 3)}, None),  # from 180 degrees the joint would go on to 270
-        (100, {(1, 2), (2, 3)}, 0),  # 180 degrees is out of reach
-    ],
-)
-def test_four_vertices_around_the_base(
-    limit: float, walls: set[tuple[int, int]], joint: int | None
-) -> None:
-    steps, mesh = around_the_base(np.deg2rad(10))
-    found, full = walls_of(steps, mesh, turning_by(limit), NEVER)
-    assert set(found) == walls
-    assert full == joint
 
 
 def test_the_few_samples_beyond_the_limits_are_kept_off() -> None:
