@@ -34,6 +34,7 @@ def test_no_choice_of_branches_changes_less_often(valid: list[list[bool]]) -> No
     assert len(fewest_lift_offs(np.array(valid))) == min(changes)
 
 
+@pytest.mark.second
 def test_the_square_needs_no_change() -> None:
     path, reached, changes = counted(build_surface(shipped("square", 200)), 0.5)
     assert len(path.points) == len(reached) and reached.mean() > 0.95 and not len(changes)

@@ -92,15 +92,6 @@ class TestIsomorphism:
         swapped = (loop[2], loop[1], loop[0], *loop[3:])
         assert not isomorphic(hub, with_loops(hub, 0, swapped))
 
-    def test_flipped_loop(self) -> None:
-        case = Instance.read(PAPER / "annulus.json")
-        outer, inner = case.cells[1].loops
-        assert isomorphic(case, with_loops(case, 1, inner, outer))
-        # Red, blue, green round a cell whose neighbours meet in the order red, green, blue.
-        case = Instance.read(PAPER / "figeasycell3.json")
-        (loop,) = case.cells[0].loops
-        assert not isomorphic(case, with_loops(case, 0, loop[::-1]))
-
     def test_mirror_image(self) -> None:
         # Blue, green, red in counter-clockwise order is not red, green, blue.
         case = Instance.read(PAPER / "figeasycell3.json")
@@ -116,20 +107,6 @@ class TestIsomorphism:
         case = loop(3, 1, -1, 2, -2, 4, -4)
         assert isomorphic(case, loop(3, -2, 2, 1, -1, -4, 4))
         assert not isomorphic(case, loop(3, 1, 2, -1, -2, 4, -4))
-
-    def test_colors_of_a_cell(self) -> None:
-        case = Instance.read(PAPER / "figcost-left.json")
-        cells = (case.cells[0], case.cells[1], replace(case.cells[2], colors=(0, 1)))
-        assert not isomorphic(case, replace(case, cells=cells))
-
-    def test_joinable_colors(self) -> None:
-        case = Instance.read(PAPER / "figforcolor.json")
-        edges = (replace(case.edges[0], colors=(0,)), *case.edges[1:])
-        assert not isomorphic(case, replace(case, edges=edges))
-
-    def test_names_of_colors(self) -> None:
-        case = Instance.read(PAPER / "crack-partial.json")
-        assert not isomorphic(case, replace(case, colors=("blue", "red")))
 
     def test_outside(self) -> None:
         """Two holes beside each other are not two holes apart."""
@@ -318,7 +295,7 @@ def test_a_deadline_ends_it_wherever_it_is() -> None:
     decompose(labelled, deadline=patient)
     times = int(1e9 - patient.moment)
     assert times > 20
-    for asked in range(times):
+    for asked in range(0, times, 4):
         with pytest.raises(OutOfTime):
             decompose(labelled, deadline=Asked(asked))
     decompose(labelled, deadline=Asked(times))

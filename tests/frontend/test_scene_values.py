@@ -172,16 +172,6 @@ def test_arrays_are_held_to_what_mesh_files_are(vertices: Any, faces: Any, field
     assert not caught.value.message.startswith("Value error")  # pydantic's words
 
 
-def test_names_of_files_are_relative_to_the_folder(tmp_path: Path) -> None:
-    content = Scene.read(WOK).model_dump()
-    scene = Scene(**content | {"folder": WOK.parent})
-    assert scene.setup == Setup.read(WOK.parent / "../../models/robots/ur5_polishing.toml")
-    assert scene.model_dump() == content
-    with pytest.raises(InputError, match="No such file") as caught:
-        Scene(**content | {"folder": tmp_path})
-    assert str(caught.value.file).startswith(str(tmp_path))
-
-
 def test_a_scene_prints_what_it_is_in_one_line() -> None:
     scene = Scene.read(WOK.with_name("wok_obstacle.toml"))
     text = str(scene)

@@ -25,20 +25,14 @@ CORNERS = np.array([[-0.05, -0.01, 0.0], [0.05, -0.01, 0.0], [0.0, 0.05, 0.0]])
 MOST = 0.5  # rad; docs/judging-trajectories.md: in contact, a longer step is a jump
 
 
-def course(
-    passed_within: float, monkeypatch: pytest.MonkeyPatch, refused: tuple[float, float] = (9, 9)
-) -> Course:
-    """Across a triangle, with a joint that turns by half a circle, most of it within a length.
-
-    Between samples, angles of a range are refused.
-    """
+def course(passed_within: float, monkeypatch: pytest.MonkeyPatch) -> Course:
+    """Across a triangle, with a joint that turns by half a circle, most of it within a length."""
 
     class Judge:
         reason_names = ("valid", "no")
 
         def __call__(self, joints: np.ndarray, _deadline: Any) -> Any:
-            low, high = refused
-            return SimpleNamespace(reasons=((joints > low) & (joints < high)).any(axis=1) * 1)
+            return SimpleNamespace(reasons=np.zeros(len(joints)))
 
     def follow(_prepared: Any, samples: Samples, *_: Any) -> Followed:
         angle = np.arctan(samples.points[:, 0] / passed_within)[:, None]
@@ -77,18 +71,6 @@ def test_a_fast_joint_gets_samples_so_close_that_no_step_is_a_jump(
     # Where the joint is slow, samples are as far apart as ever.
     assert np.median(steps) > 0.9 * DISTANCE
     assert (np.ptp(steps) < 1e-12) == (passed_within > DISTANCE)
-
-
-def test_steps_between_whose_samples_a_test_fails_are_halved(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Until joints move by a degree at most; what no sample passes is left to the tests of each."""
-    low, high = 0.1, 0.15
-    joints = course(0.003, monkeypatch, (low, high)).followed.joints[:, 0]
-    steps = np.diff(joints)
-    inside = (joints[1:] > low) & (joints[:-1] < high)
-    assert inside.sum() > 2 and steps[inside].max() <= np.radians(1.001)
-    assert steps[~inside].max() > np.radians(5)
 
 
 @pytest.mark.parametrize("beyond", [0.0, 1e-6, 2e-5])

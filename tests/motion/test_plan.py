@@ -155,15 +155,6 @@ def test_an_arm_of_continuous_joints_without_masses_and_velocities() -> None:
     assert re.search(r'"lower":\s*\[null', planned.page().decode())  # JSON knows no infinity
 
 
-@pytest.mark.slow
-def test_a_mesh_that_is_much_coarser_than_the_spacing_is_covered_as_far_as_can_be() -> None:
-    """A dome of some 12 triangles: at every corner between two of them the tool's body hits it."""
-    planned = cellcolor.plan(shipped("wok", 12), spacing_m=0.03)
-    assert planned.verdict.valid
-    covered = planned.verdict.covered
-    assert covered is not None and covered.closely_covered_share > 0.9
-
-
 def test_where_no_path_can_be_followed_it_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(asked: ArmRefusals, points: Array, _normals: Array) -> Codes:
         return np.full(len(points), asked.names.index("object collision"), dtype=np.uint8)

@@ -19,16 +19,13 @@ from cellcolor.deadline import NEVER
 from cellcolor.frontend import Scene
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.questions.placements import (
-    VARIABLES,
     PlacedMinimum,
     Placements,
     Pose,
 )
 from cellcolor.questions.placing import (
-    around,
     coarse_scene,
     displaced,
-    distance,
     minima_at,
     spread,
 )
@@ -37,7 +34,6 @@ from examples import examples
 pytestmark = pytest.mark.second
 
 RANGES = {"x": (0.3, 0.6), "y": (-0.3, 0.1)}
-NUMBERS = st.floats(-2, 2, allow_nan=False)
 SHARES = st.integers(0, 1000).map(lambda mill: mill / 1000)
 
 
@@ -206,32 +202,6 @@ def test_displacements_are_as_far_as_they_say(pose: Pose, up_to: float, count: i
         off = np.linalg.norm(there - start, axis=1).max()
         assert off == pytest.approx(said, abs=1e-9)
         assert off == pytest.approx(up_to * number / count, rel=1e-3)
-
-
-@examples(50)
-@given(
-    names=st.sets(st.sampled_from(VARIABLES), min_size=1),
-    start=st.tuples(*6 * [NUMBERS]),
-    low=NUMBERS,
-    width=st.floats(0.01, 2),
-    count=st.integers(1, 40),
-    share=st.floats(0.01, 1),
-    seed=st.integers(0, 100),
-)
-def test_points_stay_in_their_ranges(
-    names: set[str], start: Pose, low: float, width: float, count: int, share: float, seed: int
-) -> None:
-    ranges = dict.fromkeys(sorted(names), (low, low + width))
-    poses = spread(ranges, start, count, seed)
-    near = around(ranges, poses[0], share, count, seed)
-    assert len(poses) == len(near) == count and len(set(poses)) == count
-    for pose in (*poses, *near):
-        for name, value, before in zip(VARIABLES, pose, start, strict=True):
-            if name in ranges:
-                assert low - 1e-12 <= value <= low + width + 1e-12
-            else:
-                assert value == before
-    assert all(distance(ranges, pose, poses[0]) <= share / 2 + 1e-9 for pose in near)
 
 
 @examples(50)

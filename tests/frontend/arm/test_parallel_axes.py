@@ -129,14 +129,6 @@ def test_poses_jacobians_torques_and_measures_are_pinocchios(order: str) -> None
     assert kinematics_apart(robot, configurations(robot, 20, 1)) < 1e-9
 
 
-@every_order
-def test_reach_is_what_no_configuration_exceeds(order: str) -> None:
-    robot, kinematics = arm(order, 6)
-    poses, first = forward(robot, configurations(robot, 20_000, 2)), int(robot.turning[0])
-    far = np.hypot(*(poses.tip - poses.origin[:, first + 1])[:, :2].T).max()
-    assert 0.98 * kinematics.reach < far <= kinematics.reach + 1e-12
-
-
 def test_only_points_in_the_plane_have_solutions() -> None:
     robot, kinematics = arm("RR", 1)
     tips, directions, _ = tip_frames(robot.model, configurations(robot, 1, 1))
@@ -155,20 +147,6 @@ def test_only_points_in_the_plane_have_solutions() -> None:
 @pytest.fixture(scope="module")
 def built() -> BuildResult:
     return build_surface(Scene.read(COBRA).varied(object={"target_vertices": 300}))
-
-
-@pytest.mark.parametrize("lift", [0.12, -0.11])
-def test_what_the_stroke_does_not_reach_fails_its_limits(lift: float) -> None:
-    """From 77 to 287 mm above the base: 387 less the tool's 100, less the stroke of 210."""
-    scene = Scene.read(COBRA).varied(object={"target_vertices": 200})
-    x, y, z = scene.placement.position_m
-    moved = build_surface(scene.moved(position_m=(x, y, z + lift)))
-    heights = moved.surface.vertices[:, 2]
-    beyond = (heights > 0.287) | (heights < 0.077)
-    assert 0 < beyond.sum() < len(heights)
-    said = moved.reasons[beyond][moved.reasons[beyond] != 1]
-    assert (said == moved.reason_names.index("joint limits")).all()
-    assert (moved.reasons[~beyond] == VALID).any()
 
 
 def test_the_kr6_is_solved_from_its_urdf_to_a_proven_minimum() -> None:

@@ -47,12 +47,6 @@ def test_off_changes_nothing() -> None:
     assert cleaned(0, 0, *sets) == (sets, SliverReport(0, 0.0, 0, 0, 0.0))
 
 
-def test_small_cell_takes_a_part_of_its_own_colors() -> None:
-    found, report = cleaned(2, 0, "a", "a", "ab", "b", "b")
-    assert found == ["a", "a", "a", "b", "b"] or found == ["a", "a", "b", "b", "b"]
-    assert report == SliverReport(1, 1.0, 0, 0, 0.0)
-
-
 def test_neighbor_with_most_colors_is_preferred() -> None:
     assert cleaned(2, 0, "a", "a", "abc", "bc", "bc")[0] == ["a", "a", "bc", "bc", "bc"]
 
@@ -61,19 +55,6 @@ def test_not_across_a_crack_of_the_colors_taken_over() -> None:
     sets = ["a", "a", "ab", "abc", "abc"]
     assert cleaned(2, 0, *sets)[0] == ["a", "a", "a", "abc", "abc"]
     assert cleaned(2, 0, *sets, crack=(1, 0))[0] == sets
-
-
-def test_merged_cells_count_together() -> None:
-    # Simplified, the middle joins both its neighbors: three vertices are not small any more.
-    found, report = cleaned(2, 3, "b", "b", "b", "a", "ac", "a", "b", "b", "b")
-    assert found == ["b", "b", "b", "a", "a", "a", "b", "b", "b"]
-    assert (report.simplified_cells, report.given_up_cells) == (1, 0)
-
-
-def test_small_cells_are_given_up_and_counted() -> None:
-    found, report = cleaned(0, 2, "a", "a", "b", "a", "a", "c")
-    assert found == ["a", "a", "", "a", "a", ""]
-    assert report == SliverReport(0, 0.0, 2, 2, 2.0)
 
 
 def rescanned(
@@ -207,16 +188,3 @@ def test_area_given_up_is_recorded(results: dict[str, BuildResult]) -> None:
     assert record["given_up_vertices"] == len(lost) > 0
     assert record["given_up_area_m2"] == pytest.approx(area)
     assert "uncovered" in str(policy.report)
-
-
-def test_given_up_vertices_are_told_from_unreachable_ones(results: dict[str, BuildResult]) -> None:
-    raw, policy = results["raw"].surface, results["policy"].surface
-    report = results["policy"].report
-    assert raw.given_up == ()
-    lost = [v for v, own in enumerate(raw.vertex_colors) if own and not policy.vertex_colors[v]]
-    assert list(policy.given_up) == lost and lost
-    coverage = decompose(policy).coverage
-    assert coverage is not None and report.slivers is not None
-    assert coverage.given_up == pytest.approx(report.slivers.given_up_area_m2 / report.area_m2)
-    unreachable = 1 - report.reachable_area_m2 / report.area_m2
-    assert coverage.unreachable == pytest.approx(unreachable, abs=1e-12)
