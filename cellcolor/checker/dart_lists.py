@@ -1,10 +1,9 @@
 """The cyclic lists of live darts that a division is written in, strands and seams put in.
 
 A strand is one of several parallel corridors across an edge; a seam is a virtual edge that makes
-one cyclic list of two loops of a cell (docs/semantics.md, sections 4 and 5). Both solvers put them
-in by code of their own (``dfs/graph.py``, ``cpsat/dart_graph.py``). That is on purpose: the
-other two reveal a mistake that only one of the three makes. :func:`whole_subcells` takes seams out
-again.
+one cyclic list of two loops of a cell (docs/semantics.md, sections 4 and 5). Both solvers have
+their own code for them (``dfs/graph.py``, ``cpsat/dart_graph.py``), on purpose: a mistake in one of
+the three is found by comparing. :func:`whole_subcells` takes seams out again.
 """
 
 from __future__ import annotations

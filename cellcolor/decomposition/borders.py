@@ -37,15 +37,13 @@ class ClosedMesh:
         # Along a border of the mesh a is followed by successor[a] with the outside on the left.
         successor = {b: a for a, b in surface.left_of if (b, a) not in surface.left_of}
         while successor:
-            first = vertex = min(successor)
-            while True:
+            vertex = min(successor)
+            while vertex in successor:
                 following = successor.pop(vertex)
                 self.third[vertex, following] = virtual
                 self.third[following, virtual] = vertex
                 self.third[virtual, vertex] = following
                 vertex = following
-                if vertex == first:
-                    break
             virtual += 1
         self.vertex_count = virtual
 

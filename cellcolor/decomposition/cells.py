@@ -60,7 +60,7 @@ def decomposition_of(
     curves = borders.curves(deadline)
     loops = loops_of(borders, curves, deadline)
     _check_planar(surface, firsts, borders, loops, deadline)
-    areas = _areas(surface, vertex_cell)
+    areas = areas_of(surface, vertex_cell, len(firsts))
     cells = tuple(
         Cell(number, surface.vertex_colors[first], loops.get(number, ()), areas[number])
         for number, first in enumerate(firsts)
@@ -166,11 +166,11 @@ def _check_planar(
             raise InputError(None, f"vertices[{first}]", message)
 
 
-def _areas(surface: LabelledSurface, vertex_cell: list[int]) -> list[float]:
+def areas_of(surface: LabelledSurface, vertex_cell: Sequence[int], cells: int) -> list[float]:
     """Square metres of each cell."""
     owner = np.array(vertex_cell)
     reached = owner != OUTSIDE
-    sums = np.bincount(owner[reached], surface.vertex_areas[reached], max(vertex_cell) + 1)
+    sums = np.bincount(owner[reached], surface.vertex_areas[reached], cells)
     return [round(float(value), 12) for value in sums]
 
 

@@ -6,14 +6,12 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition.borders import Borders, Curve
-from cellcolor.decomposition.cells import Decomposition, loops_of, pieces_of
+from cellcolor.decomposition.cells import Decomposition, areas_of, loops_of, pieces_of
 
 
 def locate(
@@ -28,12 +26,8 @@ def locate(
         The instance, with the areas of its cells and its coverage measured here, and the curves of
         its edges. There are none if another program has numbered the edges.
     """
-    cells = np.array(vertex_cell, dtype=np.int64)
-    reached = cells != OUTSIDE
-    areas = np.bincount(cells[reached], surface.vertex_areas[reached], len(instance.cells))
-    measured = tuple(
-        replace(cell, area=float(area)) for cell, area in zip(instance.cells, areas, strict=True)
-    )
+    areas = areas_of(surface, vertex_cell, len(instance.cells))
+    measured = tuple(replace(cell, area=areas[cell.id]) for cell in instance.cells)
     return Decomposition(
         replace(instance, cells=measured, coverage=surface.coverage),
         _curves(surface, instance, vertex_cell),
@@ -103,9 +97,7 @@ _Shape = tuple[tuple[_Side, int, int], ...]
 
 
 def _shapes(
-    sides: Mapping[int, _Side],
-    loops: Iterable[Sequence[Sequence[int]]],
-    deadline: Deadline,
+    sides: Mapping[int, _Side], loops: Iterable[Sequence[Sequence[int]]], deadline: Deadline
 ) -> Counter[_Shape]:
     """Each connected part of the borders in a form that does not depend on any number of an edge.
 

@@ -16,9 +16,8 @@ from cellcolor.errors import InputError
 from cellcolor.files.validation import settle
 
 PORTFOLIO = 8
-"""CP-SAT's workers unless asked for otherwise. Each worker searches in a way of its own, so that
-more workers than cores are of use. One or two take turns in a few of these ways
-(``interruptible``)."""
+"""CP-SAT's workers unless asked for otherwise. Each searches in a way of its own, so that more
+workers than cores are of use. One or two take turns in a few of these ways (``interruptible``)."""
 
 STRANDS: dict[SearchSpace, int] = {"paper": 1, "surface": 2}
 """Strands per topological edge unless asked for otherwise. A strand is one of the parallel
@@ -102,7 +101,6 @@ class Abilities:
     seams as edges (:mod:`cellcolor.solvers.seamed`).
 
     Attributes:
-        search_spaces: those that it can search.
         several_loops: it divides cells with several live loops as well.
         optimal_schemes: it lists all optimal schemes, so it is a :class:`SchemeSolver`.
         schemes_of_several_loops: it does so even where cells have several live loops.

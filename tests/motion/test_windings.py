@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any
-
 import networkx as nx
 import numpy as np
 import pytest
 from motions import Planned, planned_scene, ring_scene
 
 from cellcolor.frontend.arm.joint_space import JointSpace
-from cellcolor.motion.segment import _refuse_what_is_beyond
-from cellcolor.motion.strokes import Stroke
+from cellcolor.motion.windings import Steps, walls_of
 from cellcolor.tool_paths.measures import in_all
 
 pytestmark = pytest.mark.second
@@ -48,24 +44,29 @@ def test_cracks_of_the_color_open_the_ring_and_do_not_part_it(ring: Planned) -> 
         assert np.abs((np.remainder(steps + np.pi, 2 * np.pi) - np.pi).sum()) < 1e-6
 
 
+def around_the_base() -> Steps:
+    """The module's example."""
+    ends = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
+    angles, turns = np.deg2rad([[0.0], [90.0], [180.0], [-90.0]]), np.array([[0], [0], [1], [0]])
+    return Steps(np.arange(4), angles, ends, turns)
+
+
 def turning_by(degrees: float) -> JointSpace:
     """One joint that turns so far each way."""
     limits = np.deg2rad([degrees])
     return JointSpace.of(np.zeros(1, dtype=bool), -limits, limits, 1.0)
 
 
-def test_the_few_samples_beyond_the_limits_are_kept_off() -> None:
-    """A joint that turns to 201 degrees where 200 are allowed, in the last of 300 samples."""
-    points = np.column_stack([np.arange(300.0), np.zeros(300), np.zeros(300)])
-    turned = np.deg2rad(np.append(np.linspace(-199.0, 199.0, 299), 201.0))[:, None]
-    stroke = Stroke(0, 0, points, points, turned)
-    samples = SimpleNamespace(points=points, faces=np.arange(300))
-    courses = [SimpleNamespace(samples=samples)]
-    refused: list[tuple[int, list[float], str]] = []
-    refusals = SimpleNamespace(add=lambda face, at, why: refused.append((face, at.tolist(), why)))
-    arguments: Any = (courses, [stroke], turning_by(200), refusals)
-    assert _refuse_what_is_beyond(*arguments)
-    assert refused == [(299, [299.0, 0.0, 0.0], "joint limits")]
-    # Where a tenth is beyond, that is no exception, and the stroke is cut.
-    arguments = (courses, [stroke], turning_by(180), refusals)
-    assert not _refuse_what_is_beyond(*arguments)
+def test_four_vertices_around_the_base() -> None:
+    """From 180 degrees the joint would go on to 270."""
+    assert walls_of(around_the_base(), turning_by(200)) == ([(2, 3)], None)
+
+
+def test_a_joint_that_parts_a_segment_is_named() -> None:
+    """Two ways from C to D: one of them is in a window, or neither."""
+    steps = around_the_base()
+    line = steps._replace(ends=np.array([[2, 3], [2, 3]]), turns=np.array([[1], [0]]))
+    walls, joint = walls_of(line, turning_by(200))
+    assert (walls, joint) == ([(2, 3)], None)
+    turned = line._replace(turns=np.array([[2], [3]]))
+    assert walls_of(turned, turning_by(200)) == ([(2, 3)], 0)

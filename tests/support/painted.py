@@ -31,7 +31,7 @@ from cellcolor.data.solution import (
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families.meshes import grid_faces, make_mesh
-from cellcolor.lab.families.voronoi import voronoi
+from cellcolor.lab.families.surfaces import voronoi
 from cellcolor.painting.paint import Painted, paint
 from cellcolor.tool_paths.region import Segments
 

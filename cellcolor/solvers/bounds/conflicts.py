@@ -29,13 +29,9 @@ for k of them, 2^k sums have to be examined."""
 class Separation:
     """What a segment of one color region does to those of another.
 
-    A segment of one region that touches both merged cells ``ends`` divides merged cells of the
-    other region into ``groups``: no segment of the other region touches two merged cells of
-    different groups without crossing the first, however often cutting paths cross the edges.
-
-    Attributes:
-        ends: two merged cells that belong to the one region and not to the other.
-        groups: merged cells that belong to the other region and not to the one, two groups or more.
+    A segment of one region that touches both ``ends``, merged cells of that region alone, divides
+    merged cells of the other region alone into ``groups``, two or more: no segment of the other
+    region touches two groups without crossing it, however often cutting paths cross the edges.
     """
 
     ends: tuple[MergedCell, MergedCell]

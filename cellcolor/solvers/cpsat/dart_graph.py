@@ -2,8 +2,8 @@
 
 A strand is one of several parallel corridors across an edge; a seam is a virtual edge that makes
 one cyclic list of two loops of a cell (docs/semantics.md, sections 4 and 5). The reference solver
-(``dfs/graph.py``) and the checker (``dart_lists.py``) insert strands and seams with their own
-code. This is on purpose: the others reveal a mistake made in only one of the three.
+(``dfs/graph.py``) and the checker (``dart_lists.py``) have their own code for both, on purpose: a
+mistake in one of the three is found by comparing.
 """
 
 from __future__ import annotations

@@ -19,12 +19,7 @@ from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.cell_divisions import ZERO, Blocks, divisions
 from cellcolor.solvers.cpsat.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block, Painting
-from cellcolor.solvers.cpsat.shown_colors import (
-    Choices,
-    ShownColors,
-    choices_with,
-    shown_in_cell,
-)
+from cellcolor.solvers.cpsat.shown_colors import Choices, ShownColors, choices_with, shown_in_cell
 from cellcolor.union_find import UnionFind
 
 MOST_STEPS = 1_000_000
@@ -95,8 +90,8 @@ class Frontier:
         ]
         self._needed = cache(self._needed_now)
         self._divisions = cache(self._divisions_now)
-        # For each layer, for each front in it, its steps: a division of the next cell, and the
-        # number of the front that it leads to. Steps that lead to no scheme are left out.
+        # By layer and front its steps: a division of the next cell, and the number of the front
+        # that it leads to. Steps that lead to no scheme are left out.
         self._steps: list[list[list[tuple[Blocks, int]]]] = []
         ends = self._build()
         # For each front of a layer, the last one first, how many schemes are reached from it.

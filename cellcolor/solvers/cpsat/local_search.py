@@ -54,8 +54,8 @@ it, and when that is taken back. The factor by which both grow with each move, s
 count less."""
 
 PAUSE = 20
-"""Moves in vain before a division is made of the nodes, which takes time by the size of the whole:
-in the beginning nearly every move gains something."""
+"""Moves in vain before a division is made of the nodes, which takes time: in the beginning nearly
+every move gains something."""
 
 
 class Recoloring:
@@ -65,7 +65,7 @@ class Recoloring:
         regions: the color regions of the cells.
         colors: of each node.
         rng: chooses the moves.
-        deadline: of getting ready, which takes time by the size of the graph.
+        deadline: of getting ready.
 
     Attributes:
         fewest: segments of the best division so far.

@@ -1,16 +1,16 @@
 """Segment plans: how many segments each color region gets, and which cells each of them touches.
 
-A plan is a relaxation of a division. It does not say how segments run; it only respects the pairs
-of segments that are known to be unable to pass each other (``conflicts``). So if there is no plan
-with n segments, no division of the surface has n segments (docs/bounds.md, "Segment
-plans"). A plan takes milliseconds where the model takes seconds. Terms:
+A plan is a relaxation of a division: it respects only the pairs of segments that are known to be
+unable to pass each other (``conflicts``). So if there is no plan with n segments, no division of
+the surface has n segments (docs/bounds.md, "Segment plans"). A plan takes milliseconds where the
+model takes seconds. Terms:
 
 - A **merged cell** consists of cells that nothing separates in any color (``merged_surface``).
 - A **separation** of two color regions: if a segment of the one region touches both ``ends``, no
   segment of the other region touches merged cells of two of the ``groups``.
 - Merged cells of a region are of one **kind** if the same separations name them in the same places.
-  A segment that touches one of a kind may then touch all of them, so the model has one literal for
-  each kind, not for each merged cell. What no separation names any segment of the region may touch.
+  A segment that touches one may touch all of them, so the model has one literal for each kind. What
+  no separation names any segment of the region may touch.
 - A region gets several **copies**, of which the plan uses as many as it has segments there. If it
   may have more segments than copies, nothing is asked of a plan that has: such a region touches all
   its merged cells, and no separation counts there.

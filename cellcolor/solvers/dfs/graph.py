@@ -92,8 +92,8 @@ class Graph:
     def sufficient_seam_strands(self, cell: int) -> list[int]:
         """How many strands each seam of a cell needs so that no division is lost.
 
-        With two loops it is half their darts minus one. With more loops, each seam needs half the
-        darts of the whole cell, in which the strands of earlier seams count on both sides.
+        With two loops it is half their darts minus one. With more, each seam needs half the darts
+        of the whole cell, in which the strands of earlier seams count on both sides.
         """
         counts = [self._strands * len(loop) for loop in self._loops[cell]]
         total = sum(counts)

@@ -24,9 +24,7 @@ class ReferenceSolver:
     """
 
     abilities = Abilities(
-        search_spaces=("paper", "surface"),
-        several_loops=True,
-        optimal_schemes=True,
+        search_spaces=("paper", "surface"), several_loops=True, optimal_schemes=True
     )
     search: type[DepthFirstSearch] = DepthFirstSearch
     bound_before: str | None = None
