@@ -160,19 +160,6 @@ def test_a_contact_in_no_color_is_none() -> None:
     )
 
 
-def test_what_a_path_does_where_no_color_reaches_is_not_asked() -> None:
-    """In contact at a vertex without colors, in a stroke of its own."""
-    path, _ = walk_of(scene(), best())
-    beyond = scene().surface.vertex_colors.index(())
-    branch = int(np.flatnonzero(~np.isnan(scene().configurations[beyond, :, 0]))[0])
-    assert path.contact is not None
-    joints = np.vstack([path.joints, scene().configurations[beyond, branch]])
-    verdict = the_oracle().judge(cellcolor.ContactPath(joints, None, np.append(path.contact, True)))
-    least = the_oracle().bounds.lower
-    assert verdict.valid and verdict.plan == best()
-    assert (verdict.strokes, verdict.segments, verdict.needed) == (least + 1, least, least + 1)
-
-
 def test_points_that_the_joints_do_not_give() -> None:
     """As in millimeters, or in another frame."""
     path, _ = walk_of(scene(), best())

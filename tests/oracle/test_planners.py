@@ -7,13 +7,11 @@ import pytest
 from library import INSTANCES
 from meshes import drawn
 from planners import (
-    configurations_of,
     largest_set_first,
     nearest_along_raster,
 )
 
 import cellcolor
-from cellcolor.data.candidate_table import CandidateTable
 from cellcolor.data.surface import LabelledSurface
 
 RED, BLUE = 0, 1
@@ -56,16 +54,3 @@ def test_the_raster_goes_on_in_the_branch_that_is_nearest(angle: float, before: 
     assert colors.count(RED) == before and colors.count(BLUE) == 10 - before
     columns = {vertex % 5 for vertex, color in enumerate(colors) if color == RED}
     assert columns in ({0, 1}, {3, 4})
-
-
-def test_configurations_of_a_scene_are_those_of_its_colors() -> None:
-    file = INSTANCES / "scenes" / "wok.surface.json"
-    surface = LabelledSurface.read(file)
-    table = CandidateTable.beside(surface, file)
-    found = configurations_of(surface, table)
-    for vertex in range(0, len(surface.vertices), 97):
-        there = np.flatnonzero(np.isfinite(found[vertex]).all(axis=1)).tolist()
-        assert tuple(there) == surface.vertex_colors[vertex]
-        for color in there:
-            (branch,) = np.flatnonzero(table.node_color[vertex] == color)
-            assert np.array_equal(found[vertex, color], table.configurations[vertex, branch])

@@ -9,7 +9,6 @@ from exhaustive_minima import minimum
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import PAPER
-from rooms import graph
 from vertex_minima import vertex_minimum
 
 from cellcolor.data.cells_and_edges import Cell, Edge
@@ -58,29 +57,6 @@ def test_hard_cells_need_as_many_regions_as_all(seed: int, cells: int, colors: i
 
     sets_of_strangers = filter(apart, itertools.combinations(range(len(instance.cells)), value))
     assert (len(found) == value) == any(True for _ in sets_of_strangers)
-
-
-def test_a_color_is_not_dominated_by_one_that_an_edge_keeps_out() -> None:
-    """Cells 0 and 1 have red and blue, but blue goes from one to the other through cell 2 only.
-
-    There a green corridor from 3 to 4 would be in its way: red is needed for 2 segments.
-    """
-    green = 2
-    instance = graph(
-        ((RED, BLUE), (1, 2)),
-        ((RED, BLUE), (-1, 3)),
-        ((BLUE, green), (-2, 4, -3, 5)),
-        ((green,), (-4,)),
-        ((green,), (-5,)),
-        cracks={1: (RED,)},
-    )
-    assert minimum(instance) == 2
-    assert solve(instance, Options()).segments == 2
-
-
-def test_a_color_that_a_crack_stops_is_needed() -> None:
-    # Blue is everywhere where red is, but only red passes the one edge.
-    assert solve(Instance.read(PAPER / "dominated-by-crack.json"), Options()).segments == 1
 
 
 def test_crossings_that_are_enough() -> None:
