@@ -1,10 +1,8 @@
-"""What the judge of trajectories refuses: ``python benchmarks/judge.py forged|planted [COUNT]``.
+"""What the judge of trajectories refuses: ``python benchmarks/judge.py [COUNT]``.
 
-    forged   drives forged from plans of four shipped scenes, in the sorts of
-             ``tests/support/forged_drives.py``; before the first, every plan has to stay valid in
-             ways that change nothing, and not without one of its strokes
-    planted  faults planted in two trajectories without any, in the sorts of
-             ``tests/support/planted_faults.py``: each has to be found with its kind, joint and time
+Drives are forged from plans of four shipped scenes, in the sorts of
+``tests/support/forged_drives.py``; before the first, every plan has to stay valid in ways that
+change nothing, and not without one of its strokes.
 
 Measures how many of COUNT draws (1,000) are refused, by sort; the sorts take turns, and the seed of
 a draw is its number. Exit code 1 if anything was not as it has to be.
@@ -21,10 +19,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
 import numpy as np
-import rasters
 from forged_drives import FORGERS
 from honest_drives import HONEST, Honest, dropped_stroke
-from planted_faults import PLANTERS, found
 
 import cellcolor
 from cellcolor.data.trajectory import Trajectory
@@ -33,7 +29,6 @@ from cellcolor.door.planned import PlannedScene
 from cellcolor.trajectory_checker.check import check_trajectory
 
 SCENES = ("wok", "wok_obstacle", "half_pipe", "hemisphere_tilted")
-ON_AN_OBSTACLE = "1 mm inside an obstacle"  # only the first trajectory has one
 
 
 def forged(count: int) -> bool:
@@ -71,20 +66,6 @@ def judged(made: PlannedScene, trajectory: Trajectory) -> TrajectoryVerdict:
     return check_trajectory(made.built, trajectory, minimum_lift_offs=made.solution.lift_offs)
 
 
-def planted(count: int) -> bool:
-    """Plant, judge and print; whether all were found."""
-    untouched = [rasters.cap(), rasters.square()]
-    good = all(check_trajectory(built, drive).valid for _, built, drive in untouched)
-    tally = Tally(list(PLANTERS))
-    for number in range(count):
-        name = tally.sort(number)
-        place = 0 if name == ON_AN_OBSTACLE else number // len(PLANTERS) % 2
-        prepared, built, drive = untouched[place]
-        fault = PLANTERS[name](prepared, drive, np.random.default_rng(number))
-        tally.add(name, number, found(fault, check_trajectory(built, fault.trajectory)))
-    return tally.printed() and good
-
-
 class Tally:
     """How many of each sort were drawn and refused."""
 
@@ -114,10 +95,9 @@ class Tally:
 def main(arguments: list[str] | None = None) -> int:
     """Print a table."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("what", choices=["forged", "planted"])
     parser.add_argument("count", nargs="?", type=int, default=1000)
     asked = parser.parse_args(arguments)
-    return 0 if (forged if asked.what == "forged" else planted)(asked.count) else 1
+    return 0 if forged(asked.count) else 1
 
 
 if __name__ == "__main__":

@@ -240,7 +240,7 @@ def main() -> None:
     if arguments.time_limit > 0:
         files = graph_files(LIBRARY)
         entries = LibraryIndex.read(LIBRARY / INDEX).entries
-        proved = {entry.name for entry in entries if not entry.is_open}
+        proved = {e.name for e in entries if e.paper.proved and e.surface.proved}
         for name in arguments.names or [name for name in files if name not in proved]:
             graph = graph_of(files[name])
             improve(name, graph, arguments.solver, arguments.time_limit, arguments.workers)

@@ -108,7 +108,7 @@ def entry_of(
     shown = [_Shown.read(folder, file, graph) for file in solution_files(folder, name)]
     ranges: dict[SearchSpace, KnownRange] = {}
     for space in _SPACES:
-        kept = before.range_in(space) if before is not None else None
+        kept: KnownRange | None = getattr(before, space, None)
         lower = _dated(_lower(space, shown), kept.lower if kept else None, version_of, date)
         upper = _upper(space, shown)
         if upper is not None:
@@ -186,7 +186,7 @@ def problems_of(folder: Path, entry: LibraryEntry) -> list[str]:
 def _bound_problems(entry: LibraryEntry, shown: Sequence[_Shown]) -> Iterator[str]:
     """Where an entry says other bounds than the solutions show."""
     for space in _SPACES:
-        said = entry.range_in(space)
+        said: KnownRange = getattr(entry, space)
         lower, upper = _lower(space, shown), _upper(space, shown)
         if replace(lower, version=said.lower.version, date=said.lower.date) != said.lower:
             yield f"{entry.file}: {space}.lower is {said.lower}, the solutions show {lower}"

@@ -43,6 +43,13 @@ def angles_between(first: Array, second: Array) -> Array:
     return np.asarray(2 * np.arcsin(np.minimum(chord / 2, 1.0)))
 
 
+def stretches(of: Mask) -> list[tuple[int, int]]:
+    """First row of each stretch of neighbors (k,) that are true, and the one after its last."""
+    steps = np.diff(np.concatenate([[0], of.astype(np.int8), [0]]))
+    begins, ends = np.flatnonzero(steps > 0).tolist(), np.flatnonzero(steps < 0).tolist()
+    return list(zip(begins, ends, strict=True))
+
+
 def to_nearest(places: Array, fixed: Array) -> Array:
     """How far places (k,) on a line are from the nearest of others, ascending and at least one."""
     after = np.searchsorted(fixed, places)

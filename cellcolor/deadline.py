@@ -36,16 +36,9 @@ class Deadline:
             raise InputError(None, "time_limit", "is not a number of seconds")
 
     @classmethod
-    def after(cls, seconds: float | None, start: float | None = None) -> Deadline:
-        """The moment some seconds after the start.
-
-        Args:
-            seconds: None for no deadline.
-            start: on the clock of ``time.monotonic``; None for now.
-        """
-        if seconds is None:
-            return NEVER
-        return cls((time.monotonic() if start is None else start) + seconds)
+    def after(cls, seconds: float | None) -> Deadline:
+        """The moment some seconds from now; None for no deadline."""
+        return NEVER if seconds is None else cls(time.monotonic() + seconds)
 
     @classmethod
     def of(cls, time_limit: TimeLimit) -> Deadline:

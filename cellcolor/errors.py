@@ -5,10 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from os import PathLike
+from typing import Any
 
 
 class CellcolorError(Exception):
     """Base of every error that cellcolor raises on purpose."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Python would hand the text to __init__, which may take other things.
+        return _unpickled, (type(self), *self.args), vars(self)
+
+
+def _unpickled(kind: type[CellcolorError], *args: object) -> CellcolorError:
+    return kind.__new__(kind, *args)
 
 
 class InputError(CellcolorError):
@@ -25,10 +34,6 @@ class InputError(CellcolorError):
         self.field = field
         self.message = " ".join(message.split())
         super().__init__(": ".join(part for part in (file, field, self.message) if part))
-
-    def __reduce__(self) -> tuple[type[InputError], tuple[object, ...]]:
-        # Python would hand the text of the whole line to __init__, which takes its three parts.
-        return type(self), (self.file, self.field, self.message)
 
     def in_file(self, file: str) -> InputError:
         """The same error with the file named, for data that learns its file late."""
@@ -78,10 +83,6 @@ class SolverMissing(CellcolorError):
         self.how = how
         super().__init__(f"the solver {name} is not installed: {how}")
 
-    def __reduce__(self) -> tuple[type[SolverMissing], tuple[str, str]]:
-        # As in InputError.
-        return type(self), (self.name, self.how)
-
 
 class TooLarge(CellcolorError):
     """What was asked for would take more memory than anybody means to spend; it was not begun."""
@@ -115,7 +116,3 @@ class BeatenBound(ContradictionError):
             f"internal contradiction: a valid plan on {name!r} has fewer segments, {segments}, "
             f"than the proven lower bound of {lower}; please report this surface and plan"
         )
-
-    def __reduce__(self) -> tuple[type[BeatenBound], tuple[str, int, int]]:
-        # As in InputError.
-        return type(self), (self.name, self.segments, self.lower)

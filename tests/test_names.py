@@ -76,18 +76,3 @@ def test_as_a_module() -> None:
     command = [sys.executable, "-m", "cellcolor", "--version"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert done.stdout == f"cellcolor {cellcolor.__version__}\n"
-
-
-def test_the_readme_has_one_test_command() -> None:
-    """The line that ``.ci/run`` looks for."""
-    lines = (ROOT / "README.md").read_text(encoding="utf-8").splitlines()
-    pattern = r"python3 -m venv .* && \.venv/bin/pytest"
-    assert len([line for line in lines if re.fullmatch(pattern, line)]) == 1
-
-
-def test_the_first_command_allows_all_that_follows() -> None:
-    """It activates the environment, and installs what drawing needs as well."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    first = next(line for line in text.splitlines() if line.startswith("python3 -m venv"))
-    assert ". .venv/bin/activate" in first and "'.[all]'" in first
-    assert "cellcolor show" in text

@@ -1,13 +1,11 @@
 """Lower bounds verified without a solver, from what their certificates say (docs/bounds.md).
 
-Each kind of bound with a certificate has its verifier in a table. A verifier gets a
-:class:`~cellcolor.checker.proof.Proof` and the certificate, and raises what speaks against it.
-
-The certificate of a ``cover`` or of ``strangers`` names some cells, and the claim is that fewer
-color regions than the bound says do not touch all of them. That of ``conflicts`` names, for each
-part of the surface, such cells as well, and pairs of segments that would have to cross. What
-crosses is verified by :mod:`cellcolor.checker.crossing_segments`, and then every way to touch the
-cells is tried by :mod:`cellcolor.checker.plan_search`, to the end or until the budget is used up.
+A verifier gets a :class:`~cellcolor.checker.proof.Proof` and the certificate, and raises what
+speaks against it. The certificate of a ``cover`` or of ``strangers`` names cells that fewer color
+regions than the bound says do not touch. That of ``conflicts`` names, for each part of the surface,
+such cells as well, and pairs of segments that would have to cross. What crosses is verified by
+``crossing_segments``, and then every way to touch the cells is tried by ``plan_search``, to the end
+or until the budget is used up.
 """
 
 from __future__ import annotations

@@ -17,11 +17,7 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.wording import count
 
 
-def number_problems(
-    instance: Instance,
-    solution: Solution,
-    segments: int | None,
-) -> list[str]:
+def number_problems(instance: Instance, solution: Solution, segments: int | None) -> list[str]:
     """What is wrong with a solution's numbers, each naming its member.
 
     Args:
@@ -110,16 +106,13 @@ def _proof_problems(solution: Solution, segments: int | None) -> list[str]:
     surface = solution.surface_lower_bound
     proved = segments == surface
     if solution.proved_for_surface != proved:
-        problems.append(
-            f"proved_for_surface: must be {str(proved).lower()}, since surface_lower_bound is "
-            f"{surface} and the division has {count(segments, 'segment')}"
-        )
+        since = f"surface_lower_bound is {surface} and the division has"
+        must = f"proved_for_surface: must be {str(proved).lower()}"
+        problems.append(f"{must}, since {since} {count(segments, 'segment')}")
     bound = solution.lower_bound if solution.search_space == "paper" else surface
     if solution.status == "optimal" and bound != segments:
-        problems.append(
-            f"status: a division with {count(segments, 'segment')} is not proved optimal by a "
-            f"lower bound of {bound}"
-        )
+        one = f"a division with {count(segments, 'segment')}"
+        problems.append(f"status: {one} is not proved optimal by a lower bound of {bound}")
     return problems
 
 

@@ -1,22 +1,15 @@
 """Verifies on the graph, by parity, that two segments would have to cross.
 
 Suppose that two disjoint segments exist: P in color region A touches the cells u and u', which are
-not in B; Q in color region B touches v and v', which are not in A. Take the closed surface that the
-cells of A and B make when their borders are filled with discs. The **wall** is all of it where B
-cannot be.
+not in B; Q in color region B touches v and v', which are not in A. The **wall** is all of the
+surface, its borders filled with discs, where B cannot be. Choose any curve q in B from v to v'.
+With one of finitely many sums c of cycles of B (on a sphere only the empty one), P's way between
+two cells of A alone in one component of the wall crosses q + c an even number of times
+(docs/bounds.md, "Conflicts"). It is not known which sum c is. But if u' is in u's component of the
+wall, and for no c the color of A connects u with u' in even parity, P and Q cannot be disjoint.
 
-1. Choose any curve q in B from v to v'. Q contains a curve q' from v to v' as well. Together they
-   make a closed curve in B. It is homologous to a sum c of cycles of B. There are finitely many
-   such sums; on a sphere the only one is empty.
-2. A closed curve in P and the wall does not meet Q. So it crosses q + c an even number of times.
-3. Let w be a cell of A alone in u's component of the wall. P's way from u to w closes to a curve as
-   in (2) by a way back through the wall, which crosses neither q nor c. So P's way from u to w has
-   even parity: it crosses q + c an even number of times.
-4. It is not known which sum c is. But if u' is in u's component of the wall, and for no c the color
-   of A connects u with u' in even parity, then P and Q cannot be disjoint.
-
-The test joins pairs (cell, parity) across the edges of A. By (3) it leaves out the pairs of a cell
-in u's component of the wall with odd parity.
+The test joins pairs (cell, parity) across the edges of A. It leaves out the pairs of a cell in u's
+component of the wall with odd parity.
 
 Each cell is cut open along seams from its first loop to its others, so that it is a polygon with
 one list of darts. A curve is the set of the edges and seams that it crosses an odd number of times,
@@ -63,8 +56,6 @@ class TwoRegions:
     across which one of the colors goes on.
 
     Args:
-        colors: of the two regions.
-        cells: of the two regions.
         count: called with the amount of work about to be done; raises if that is too much.
     """
 
@@ -133,8 +124,8 @@ class TwoRegions:
     def _connected(self, side: int, other: tuple[int, int], wall: object) -> list[dict[int, int]]:
         """Which cells in one component of the wall a side's color connects in even parity.
 
-        The other region's segment connects two cells. For each sum of cycles of that region there
-        is a dictionary that maps the component's cells to numbers, the same if they are connected.
+        For each sum of cycles of the other region, whose segment connects two cells, there is a
+        number for each cell of the component, the same if they are connected.
         """
         own, theirs = self._domains[side], self._domains[1 - side]
         way = self._way(theirs, other[0]) ^ self._way(theirs, other[1])
@@ -226,10 +217,9 @@ class TwoRegions:
     def _turns(self, curves: Iterable[set[int]]) -> dict[int, int]:
         """Which of some curves a way across each edge crosses oddly, as the bits of a number.
 
-        The way leads from where the polygon on one side begins to where the other one does. On
-        which side of a curve a place of a polygon's border is, is how often the curve crosses the
-        border before it. The curve's crossings with the edge itself are before the way in one of
-        the two polygons.
+        The way leads from where the polygon on one side begins to where the other one does. It
+        crosses what crosses the two borders before the edge; crossings with the edge itself are
+        before the way in one of the two polygons.
         """
         crossed: dict[int, int] = {}
         for number, curve in enumerate(curves):

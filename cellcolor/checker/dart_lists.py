@@ -1,10 +1,9 @@
 """The cyclic lists of live darts that a division is written in, strands and seams put in.
 
 A strand is one of several parallel corridors across an edge; a seam is a virtual edge that makes
-one cyclic list of two loops of a cell (docs/semantics.md, sections 4 and 5). Both solvers put them
-in by code of their own (``dfs/graph.py``, ``cpsat/dart_graph.py``). That is on purpose: the
-other two reveal a mistake that only one of the three makes. :func:`whole_subcells` takes seams out
-again.
+one cyclic list of two loops of a cell (docs/semantics.md, sections 4 and 5). Both solvers have
+their own code for them (``dfs/graph.py``, ``cpsat/dart_graph.py``), on purpose: a mistake in one of
+the three is found by comparing. :func:`whole_subcells` takes seams out again.
 """
 
 from __future__ import annotations
@@ -32,11 +31,11 @@ def live_lists(instance: Instance, seams: Sequence[Seam], strands: int) -> list[
 
     Args:
         seams: how the loops of cells with several of them are connected, in order.
-        strands: strands per live edge; a seam has its own number.
+        strands: per live edge; a seam has its own number.
 
     Raises:
         NoLists: a seam is not where it can be, loops with live darts stay unconnected, or there are
-            more darts than can be checked in bounded memory.
+            more than ``MOST_DARTS``.
     """
     counts = {edge.id: strands if instance.joinable(edge.id) else 0 for edge in instance.edges}
     darts = 2 * sum(counts.values())  # what is joinable has a cell on both sides
@@ -57,9 +56,8 @@ def live_lists(instance: Instance, seams: Sequence[Seam], strands: int) -> list[
     for cell, found in loops.items():
         live = [loop for loop in found if any(counts[abs(dart)] for dart in loop)]
         if len(live) > 1:
-            raise NoLists(
-                f"seams: cell {cell}: {len(live)} loops with live darts are not connected"
-            )
+            apart = f"{len(live)} loops with live darts are not connected"
+            raise NoLists(f"seams: cell {cell}: {apart}")
         whole = live[0] if live else []
         lists.append([s for dart in whole for s in strands_along(dart, counts[abs(dart)])])
     return lists
@@ -80,10 +78,8 @@ def _connect(loops: list[list[int]], seam: Seam) -> None:
         raise NoLists(f"{where}: dart {missing} is not in the loops of cell {seam.cell}")
     if near is far:
         raise NoLists(f"{where}: darts {seam.from_} and {seam.to} are in one loop already")
-    start = far.index(seam.to) + 1
-    detour = [seam.id, *far[start:], *far[:start], -seam.id]
-    place = near.index(seam.from_) + 1
-    near[place:place] = detour
+    start, place = far.index(seam.to) + 1, near.index(seam.from_) + 1
+    near[place:place] = [seam.id, *far[start:], *far[:start], -seam.id]
     loops.remove(far)
 
 

@@ -95,11 +95,7 @@ def check_division(
     stuck = unavoidable_join(painted, joinable)
     if stuck is not None and seams:
         stuck = unavoidable_join_on_loops(on_loops(instance, division, seams, strands), joinable)
-    canonical = [
-        reason
-        for number, cell in enumerate(painted)
-        for reason in _not_canonical(number, cell, [cell])
-    ]
+    canonical = [why for n, cell in enumerate(painted) for why in _not_canonical(n, cell, [cell])]
     return _legal(division, stuck, canonical)
 
 
@@ -131,12 +127,9 @@ def check_scheme(instance: Instance, division: Division) -> Report:
     canonical: list[str] = []
     for cell_id, own in cells.items():
         canonical += _not_canonical(cell_id, as_one(own), own)
-        pair = unconnected_pair(own)
-        if pair is not None:
-            canonical.append(
-                f"cells[{cell_id}].subcells: {pair[0]} and {pair[1]} have one color and no chain "
-                "of loops connects them"
-            )
+        if (pair := unconnected_pair(own)) is not None:
+            alike = f"{pair[0]} and {pair[1]} have one color and no chain of loops connects them"
+            canonical.append(f"cells[{cell_id}].subcells: {alike}")
     return _legal(division, unavoidable_join_on_loops(cells, joinable), canonical)
 
 
@@ -167,8 +160,7 @@ def check_solution(
     """Hold a solution against its instance: its division, and every number in it.
 
     Lower bounds are verified by their certificates before the deadline; those without one are taken
-    on trust (:func:`~cellcolor.checker.claimed_numbers.claims` names what is), as far as they
-    contradict nothing.
+    on trust, as far as they contradict nothing (``claimed_numbers.claims`` names them).
 
     Args:
         regions: the color regions that each cell lies in, if they are not to be read off the graph.

@@ -1,13 +1,11 @@
 """Whether some number of segments is enough to touch some cells: tries everything.
 
-A segment lies in one color region, and touches some of its cells. Two segments that are in
-conflict cannot both touch all that the conflict names. Each cell has to be touched by some segment,
-so a cell that is not touched yet is given to each segment that can still touch it, and to a new one
-in each of its color regions. With no conflicts that is a search for a set cover.
+A segment lies in one color region. Two segments in conflict cannot both touch all that the conflict
+names. A cell that is not touched yet is given to each segment that can still touch it, and to a new
+one in each of its color regions. With no conflicts that is a search for a set cover.
 
-Cells that neither color regions nor conflicts connect, not even by way of other cells, are touched
-by different segments that do not mind each other. So each such group is searched by itself, and the
-numbers add up.
+Cells that neither color regions nor conflicts connect, not even by way of other cells, are searched
+by themselves, and the numbers add up.
 """
 
 from __future__ import annotations

@@ -81,9 +81,8 @@ def unavoidable_join(cells: Sequence[PaintedCell], joinable: Joinable) -> Strand
 
     Between two successive darts in state 1, the darts in state 0 show first the color of the
     sub-cell before, then that of the sub-cell after. Where the change lies is free in each gap;
-    the choices for all gaps of all cells together are a 2-satisfiability problem: a dart's
-    variable says that it shows the later color. A dart whose other side is in none of the cells
-    may show what it likes.
+    that is a 2-satisfiability problem: a dart's variable says that it shows the later color. A dart
+    whose other side is in none of the cells may show what it likes.
     """
     shown: dict[Strand, tuple[int, int]] = {}
     clauses: list[tuple[_Literal, _Literal]] = []
@@ -223,10 +222,10 @@ def unavoidable_join_on_loops(cells: PaintedLoops, joinable: Joinable) -> Strand
 def can_be_drawn(loops: Sequence[Sequence[int]]) -> bool:
     """Whether a planar cell can be divided into connected sub-cells that meet its loops like this.
 
-    Sub-cells that are met once, or on both sides of nothing else, are drawn at once. If two loops
-    are left that one sub-cell meets, the cell is cut open along a path in this sub-cell from the
-    one to the other, which makes one loop of them. The sub-cell is then in two parts, and each of
-    its other darts belongs to either: both are tried.
+    What is in nobody's way is drawn at once. If two loops are left that one sub-cell meets, the
+    cell is cut open along a path in this sub-cell from the one to the other, which makes one loop
+    of them. The sub-cell is then in two parts, and each of its other darts belongs to either: both
+    are tried.
 
     Args:
         loops: for each loop of the cell the sub-cells of its darts in state 1, in cyclic order.

@@ -65,9 +65,6 @@ def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
         same = color is not None and color == plan.vertex_colors[b]
         if same and color not in surface.cracked(a, b):
             segments.join(a, b)
-    segment_of = [-1] * count
     found = segments.sets()  # in the order of their first vertices
-    for number, vertices in enumerate(found):
-        for vertex in vertices:
-            segment_of[vertex] = number
-    return PlanReport((), len(found), tuple(segment_of))
+    number_of = {vertex: number for number, own in enumerate(found) for vertex in own}
+    return PlanReport((), len(found), tuple(number_of.get(v, -1) for v in range(count)))

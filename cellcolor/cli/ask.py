@@ -147,12 +147,13 @@ def place(
     Many placements are tried on a coarse mesh, the best ones built and proved on the scene's own.
     """
     from cellcolor.cli.inputs import with_tolerance
-    from cellcolor.door.asking import kind_of_map, save_map
     from cellcolor.door.asking import place as placements_of
+    from cellcolor.door.asking import save_map
+    from cellcolor.door.drawing import kind_of_picture
     from cellcolor.files.writing import check_output
 
     if picture is not None:
-        check_output(picture, kind_of_map(picture), [scene])
+        check_output(picture, kind_of_picture(picture, flat=True), [scene])
     with at_work(scene, "placing", _UNSOLVED) as tell:
         found = placements_of(with_tolerance(scene, tolerance), progress=tell, **search)
         if picture is not None:

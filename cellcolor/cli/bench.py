@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import shlex
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from fnmatch import fnmatchcase
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,12 +24,14 @@ from cellcolor.cli.options import (
     output_option,
     shared,
 )
-from cellcolor.cli.terminal import say_lines
-from cellcolor.errors import InputError
+from cellcolor.cli.terminal import complain, progress_bar, say, say_lines, shown
+from cellcolor.data.wording import count
+from cellcolor.errors import CellcolorError, InputError, SolverMissing
 from cellcolor.solvers.registry import DEFAULT, PAPERS, REFERENCE
 
 if TYPE_CHECKING:
-    from cellcolor.lab.runs.row import Row
+    from cellcolor.lab.runs.sweep import Contestant, Specimen
+    from cellcolor.lab.runs.table import Row, TableFile
 
 
 def _numbers(_context: click.Context, _option: click.Parameter, value: str) -> tuple[int, ...]:
@@ -94,17 +101,15 @@ def run(**given: Any) -> Exit:
     graphs (library) or one family, such as medium/thin; * stands for anything. Solvers that are
     not installed are left out. Exit code 1 if two runs contradict each other.
     """
-    from cellcolor.cli.bench_run import run_solvers
-
-    return run_solvers(**given)
+    return _run_solvers(**given)
 
 
 @bench.command()
 @_TABLES
 def summary(tables: tuple[Path, ...]) -> Exit:
     """Sum tables up as Markdown; exit code 1 if two runs contradict each other."""
-    from cellcolor.lab.runs.row import disagreements
     from cellcolor.lab.runs.summary import summary_of_runs
+    from cellcolor.lab.runs.table import disagreements
 
     rows = _read(tables)
     if not rows:
@@ -118,3 +123,130 @@ def _read(tables: Sequence[Path]) -> list[Row]:
     from cellcolor.lab.runs.table import read_table
 
     return [row for path in tables for row in read_table(path)]
+
+
+_LIBRARY = "library"
+"""Stands before the families of the library's graphs (docs/library.md)."""
+
+
+def _run_solvers(
+    subjects: Sequence[str],
+    solvers: Sequence[str],
+    seeds: Sequence[int],
+    jobs: int,
+    output: Path | None,
+    **wanted: Any,
+) -> Exit:
+    """Make the runs, keep each of them at once, and print what came of them.
+
+    Args:
+        wanted: what else :class:`~cellcolor.lab.runs.sweep.Sweep` has of the options.
+    """
+    from cellcolor.lab.runs.summary import summary_of_runs
+    from cellcolor.lab.runs.sweep import Sweep, taking_turns
+    from cellcolor.lab.runs.table import TableFile, disagreements
+    from cellcolor.lab.workers import Workers
+
+    specimens = list(taking_turns([list(_subjects(text, seeds)) for text in subjects]))
+    contestants = list(_contestants(solvers))
+    if not contestants:
+        return Exit.BAD_INPUT
+    table: AbstractContextManager[TableFile | None] = (
+        nullcontext() if output is None else TableFile(output)
+    )
+    bad: list[Specimen] = []
+    interrupted = False
+
+    def tell(subject: Specimen, error: CellcolorError) -> None:
+        named = isinstance(error, InputError) and error.file
+        complain(error if named else f"{subject.name}: {error}")
+        bad.append(subject)
+
+    with table as file:
+        before = list(file.rows) if file else []
+        sweep = Sweep(
+            specimens,
+            contestants,
+            command=shlex.join(["cellcolor", *sys.argv[1:]]),
+            done={row.key for row in before},
+            complain=tell,
+            **wanted,
+        )
+        made: list[Row] = []
+        total = len(specimens) * sweep.runs_of_each
+        try:
+            with Workers(jobs) as workers, progress_bar(total) as advance:
+                for row in sweep.run(workers):
+                    made.append(row)
+                    if file is not None:
+                        file.append(row)
+                    advance(len(made) + sweep.skipped, f"{shown(row.subject)}: {row.contestant}")
+        except KeyboardInterrupt:
+            interrupted = True
+            complain("interrupted")
+    wrong = disagreements([*before, *made])
+    if made:
+        say_lines("\n".join(summary_of_runs(made)))
+    already = f", {sweep.skipped} left out or already there" if sweep.skipped else ""
+    proved = sum(row.solved for row in made)
+    if made or not bad:  # otherwise what is wrong is all there is to say
+        say(f"{count(len(made), 'run')}, {proved} with a proved minimum{already}")
+    for line in wrong:
+        complain(line)
+    if bad:
+        return Exit.BAD_INPUT
+    if wrong:
+        return Exit.INVALID
+    return Exit.STOPPED if interrupted else Exit.DONE
+
+
+def _subjects(text: str, seeds: Sequence[int]) -> Iterator[Specimen]:
+    """What an argument stands for: families, the library, shipped files by a pattern, a file."""
+    from cellcolor.cli.inputs import read_instance
+    from cellcolor.door.installed import find_file, library
+    from cellcolor.lab.runs.sweep import Specimen, families_like, of_family, taking_turns
+
+    families = families_like(text)
+    if families:
+        yield from taking_turns([of_family(name, seeds) for name in families])
+        return
+    if text.partition("/")[0] == _LIBRARY and not Path(text).exists():
+        yield from taking_turns(_shipped_families(text))
+        return
+    patterned = any(letter in text for letter in "*?[") and not Path(text).exists()
+    names = [name for name in library() if fnmatchcase(name, text)] if patterned else [text]
+    if not names:
+        raise InputError(None, None, f"{text}: matches no family and no shipped name")
+    for name in names:
+        file = find_file(name)
+        family = file.resolve().parent.name
+        yield Specimen(family, None, str(file), partial(read_instance, file))
+
+
+def _shipped_families(pattern: str) -> list[list[Specimen]]:
+    """The graphs of the library whose family, as ``library/family``, is like a pattern."""
+    from cellcolor.cli.inputs import read_instance
+    from cellcolor.door.installed import find_file, library
+    from cellcolor.lab.runs.sweep import Specimen
+
+    wanted = f"{_LIBRARY}/*" if pattern == _LIBRARY else pattern
+    families: dict[str, list[Specimen]] = {}
+    for entry in library().index.entries:
+        family = f"{_LIBRARY}/{entry.family}"
+        if entry.file is not None and fnmatchcase(family, wanted):
+            make = partial(read_instance, find_file(entry.name))
+            families.setdefault(family, []).append(Specimen(family, None, entry.name, make))
+    if not families:
+        raise InputError(None, None, f"{pattern}: matches no family of the library")
+    return list(families.values())
+
+
+def _contestants(names: Sequence[str]) -> Iterator[Contestant]:
+    """The solvers that are installed; each of the others gets a line."""
+    from cellcolor.lab.runs.sweep import contestant
+
+    for name in dict.fromkeys(names):
+        try:
+            yield contestant(name)
+        except SolverMissing as error:
+            complain(f"left out: {error}")

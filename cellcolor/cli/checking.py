@@ -168,17 +168,10 @@ def check_files(request: Request) -> Exit:
 
 
 def _check_solution(request: Request, claim: Path) -> Exit:
-    verdict = _on_solution(request.opened(NEVER), claim, request.claim)
-    if request.as_json:
-        print_json(verdict.to_document())
-    else:
-        say_solution(name_of(request.claim), verdict)
-    return Exit.DONE if verdict.valid else Exit.INVALID
+    """Say what is known of a solution, and of the schemes that follow it in its file."""
+    subject = request.opened(NEVER)
 
-
-def _on_solution(subject: Subject, claim: Path, name: str) -> SolutionVerdict:
-    """The verdict on a solution's file, and on the schemes that follow the solution in it."""
-    from cellcolor.door.judging import check
+    from cellcolor.door.judging import check  # imports a solver
 
     instance, solution = subject.graph(), Solution.read(claim)
     on_trust = subject.check_graph()
@@ -203,8 +196,8 @@ def _on_solution(subject: Subject, claim: Path, name: str) -> SolutionVerdict:
     claimed = claims(instance, solution, report.bounds) if report.valid else {}
     if on_trust is not None:
         claimed["instance.surface"] = on_trust
-    return SolutionVerdict(
-        file=name,
+    verdict = SolutionVerdict(
+        file=request.claim,
         valid=not problems,
         problems=tuple(problems),
         segments=report.segments,
@@ -216,6 +209,11 @@ def _on_solution(subject: Subject, claim: Path, name: str) -> SolutionVerdict:
         claimed=claimed,
         schemes=schemes or None,
     )
+    if request.as_json:
+        print_json(verdict.to_document())
+    else:
+        say_solution(name_of(request.claim), verdict)
+    return Exit.DONE if verdict.valid else Exit.INVALID
 
 
 def _checked(found: BoundVerdict) -> CheckedBound:

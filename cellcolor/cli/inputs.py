@@ -88,9 +88,14 @@ def with_tolerance(path: Path, text: str | None) -> Path | Scene:
 def read_subject(path: Path, deadline: Deadline = NEVER, tolerance: str | None = None) -> Subject:
     """The same, for commands that print no report: what a scene warns of goes to standard error."""
     subject = open_file(path, deadline, tolerance)
+    warn_of(path, subject)
+    return subject
+
+
+def warn_of(path: Path, subject: Subject) -> None:
+    """Tell of likely mistakes in a scene."""
     for warning in subject.warnings:
         complain(f"{path}: warning: {warning}")
-    return subject
 
 
 def read_instance(path: Path) -> Instance:

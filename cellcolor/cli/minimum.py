@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import Any
@@ -52,7 +51,7 @@ def build(source: Path, output: Path) -> Exit:
     from cellcolor.cli.tables import nothing_to_cover
     from cellcolor.data.instance import Instance
     from cellcolor.data.surface import LabelledSurface
-    from cellcolor.door.subject import Subject, is_scene
+    from cellcolor.door.subject import is_scene
 
     check_output(output, kind_of_format(Instance.FORMAT), [source])
     if is_scene(output):
@@ -70,16 +69,18 @@ def build(source: Path, output: Path) -> Exit:
         if subject.given_instance is not None:
             raise InputError(str(source), "format", "is an instance already")
         beside: list[Output] = []
+        instance = subject.graph()
         reference = os.path.relpath(source.resolve(), output.parent.resolve())
         if (built := subject.built) is not None:
             side = {"side_file": side_path.name}
             surface = replace(built.surface, meta=built.surface.meta | side)
-            subject, reference = Subject(source, built, surface), surface_path.name
+            instance, reference = replace(instance, meta=surface.meta), surface_path.name
             beside = [Output(side_path, SIDE_FILE, [built.candidates.to_bytes()])]
             beside += [Output.of(surface_path, surface)]
-        named = None if alone else PurePath(reference).as_posix()
-        instance = subject.decomposed(named).instance
-        beside = [] if alone else beside
+        named = None
+        if instance.surface is not None and not alone:
+            named = replace(instance.surface, path=PurePath(reference).as_posix())
+        instance, beside = replace(instance, surface=named), [] if alone else beside
         # The instance last: it carries the fingerprint of its surface.
         write([*beside, Output.of(output, instance)], [source])
         if built is not None:
@@ -124,7 +125,6 @@ def solve(files: tuple[Path, ...], every: bool, limit: int | None, **given: Any)
     FILE may be the name of a shipped one, such as wok: a file of that name goes first. That holds
     for the other commands as well; cellcolor.library() lists the names in Python.
     """
-    begun = time.monotonic()
     space = given["search_space"]
     wrong = {
         "--strands needs --search-space surface": given["strands"] and space == "paper",
@@ -141,7 +141,7 @@ def solve(files: tuple[Path, ...], every: bool, limit: int | None, **given: Any)
     from cellcolor.solvers.interface import STRANDS
 
     given["strands"] = given["strands"] or STRANDS[space]
-    return solve_files(files, schemes=(limit or _SCHEMES) if every else None, begun=begun, **given)
+    return solve_files(files, schemes=(limit or _SCHEMES) if every else None, **given)
 
 
 @cellcolor.command()
@@ -176,14 +176,12 @@ def check(seconds: float, **given: Any) -> Exit:
     surface, for a trajectory (.json or .csv) it is the scene. One of the two may be -, for standard
     input.
     """
-    begun = time.monotonic()
     if given["subject"] == given["claim"] == "-":
         raise click.UsageError("only one of the two can be standard input (-)")
 
     from cellcolor.cli.checking import Request, check_files
 
-    deadline = Deadline.after(seconds, begun)
-    return check_files(Request(seconds=seconds, deadline=deadline, **given))
+    return check_files(Request(seconds=seconds, deadline=Deadline.after(seconds), **given))
 
 
 @cellcolor.command()
@@ -206,7 +204,7 @@ def show(file: Path, claim: Path | None, output: Path, view: str | None, **of: A
     """
     from cellcolor.cli.inputs import open_file
     from cellcolor.data.plan import Plan
-    from cellcolor.door.drawing import draw, kind_of_picture, view_of
+    from cellcolor.door.drawing import draw, kind_of_picture, picture_of
     from cellcolor.door.installed import extras_for
     from cellcolor.door.reading import format_of_claim
 
@@ -216,12 +214,12 @@ def show(file: Path, claim: Path | None, output: Path, view: str | None, **of: A
     of["plan" if claim and format_of_claim(claim) == Plan.FORMAT else "solution"] = claim
     with extras_for(file):
         try:
-            seen, picture = view_of(view, **of)
+            picture = picture_of(view, "cells", of)
         except InputError as error:  # what is wrong is an option, not a file
             raise click.UsageError(str(error)) from error
     subject = open_file(file)
     with extras_for(output):
-        drawing = draw(picture, subject, seen)
+        drawing = draw(picture, subject, of)
         content = drawing.render(output.suffix)
     INTERRUPTS.check()
     write([Output(output, kind, [content])], inputs)

@@ -31,7 +31,6 @@ from cellcolor.tool_paths.registry import DEFAULT_PATTERN, PATTERNS, pattern_nam
 
 if TYPE_CHECKING:
     from cellcolor.door.planned import UnfinishedPlan
-    from cellcolor.door.subject import Subject
     from cellcolor.painting.paint import Painted
 
 _ENDING = ".surface.json"
@@ -93,7 +92,8 @@ def paint(
     except OutOfTime as error:
         message = f"{source}: not painted: the time limit came first; nothing is written"
         raise OutOfTime(message) from error
-    write_painted(painted, output, inputs)
+    check_painted(output, inputs)
+    write([Output.of(plan_path, painted.plan), Output.of(output, painted.surface)], inputs)
     added = len(painted.surface.vertices) - len(subject.surface.vertices)
     refined = f", {count(added, 'vertex', 'vertices')} added" if added else ""
     say(f"wrote {output}: {segments_and_lift_offs(painted.segments)}{refined}")
@@ -138,12 +138,6 @@ def check_painted(output: Path, inputs: Sequence[Path]) -> Path:
     check_output(output, kind_of_format(LabelledSurface.FORMAT), inputs)
     check_output(plan_path, kind_of_format(Plan.FORMAT), inputs)
     return plan_path
-
-
-def write_painted(painted: Painted, output: Path, inputs: Sequence[Path]) -> None:
-    """Write both files, or after a failure none; see :func:`check_painted`."""
-    plan_path = check_painted(output, inputs)
-    write([Output.of(plan_path, painted.plan), Output.of(output, painted.surface)], inputs)
 
 
 @cellcolor.command()
@@ -216,7 +210,7 @@ def plan(
     for other programs, and report.html to look at. The options below --time-limit replace keys of
     the setup's table [motion].
     """
-    from cellcolor.cli.inputs import with_tolerance
+    from cellcolor.cli.inputs import warn_of, with_tolerance
     from cellcolor.door.planned import NothingCovered, PlanOutOfTime, check_folder
     from cellcolor.door.planning import plan as planned_of
 
@@ -242,7 +236,7 @@ def plan(
             return _unfinished(scene, output, end.__cause__.unfinished)
         raise
     INTERRUPTS.check()
-    _warn(scene, planned.subject)
+    warn_of(scene, planned.subject)
     say_lines(planned)
     verdict = planned.verdict
     for fault in verdict.faults[:_FAULTS]:
@@ -258,7 +252,9 @@ def plan(
 
 def _unfinished(scene: Path, folder: Path, unfinished: UnfinishedPlan) -> Exit:
     """Write what there is when the time limit came, and say what is missing."""
-    _warn(scene, unfinished.subject)
+    from cellcolor.cli.inputs import warn_of
+
+    warn_of(scene, unfinished.subject)
     complain(f"{scene}: not planned to the end: {unfinished.missing}")
     for line in unfinished.unanswered:
         complain(f"{scene}: {line}")
@@ -270,8 +266,3 @@ def _unfinished(scene: Path, folder: Path, unfinished: UnfinishedPlan) -> Exit:
         say(str(unfinished.result))
     say(f"wrote {count(len(written), 'file')} to {folder}: look at {folder / 'report.html'}")
     return Exit.STOPPED
-
-
-def _warn(scene: Path, subject: Subject) -> None:
-    for warning in subject.warnings:
-        complain(f"{scene}: warning: {warning}")

@@ -21,7 +21,7 @@ from cellcolor.cli.options import (
 from cellcolor.cli.terminal import apart_from, at_work, print_json, say, say_lines
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline
-from cellcolor.errors import InputError, naming
+from cellcolor.errors import InputError, RefusedResult, naming
 from cellcolor.files.writing import Output, check_output, kind_of_format, write
 
 if TYPE_CHECKING:
@@ -109,9 +109,8 @@ def answer(source: Path, given: Path, kind: str, output: Path) -> Exit:
 
 def _checked(instance: Instance, found: OutsideAnswer, kind: str) -> Solution:
     """The solution, seen by the checker, with nothing in it that the answer does not prove."""
-    from cellcolor.checker.division import check_solution
     from cellcolor.data.solution import count_segments
-    from cellcolor.solvers.checked import solution_of
+    from cellcolor.solvers.checked import checked_solution
     from cellcolor.solvers.interface import Answer, Options
 
     segments = count_segments(found.division)
@@ -121,11 +120,10 @@ def _checked(instance: Instance, found: OutsideAnswer, kind: str) -> Solution:
     claim = "The external solver claims that no division has fewer segments; this is not a proof."
     notes = (claim,) if found.claims_optimum else ()
     answered = Answer(found.division, found.seams, (), notes=notes)
-    solution = solution_of(instance, Options(), f"outside ({kind})", answered, 0.0)
-    report = check_solution(instance, solution)
-    if not report.valid:
-        raise InputError(None, None, f"is not a legal division: {report.problems[0]}")
-    return solution
+    try:
+        return checked_solution(instance, Options(), f"outside ({kind})", answered, 0.0)
+    except RefusedResult as error:
+        raise InputError(None, None, f"is not a legal division: {error}") from error
 
 
 @cellcolor.command(name="import")

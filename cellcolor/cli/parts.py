@@ -73,7 +73,7 @@ def inspect(
     Says why a scene would refuse it, and what repair would do about that. Nothing is changed.
     """
     from cellcolor.door import parts
-    from cellcolor.door.drawing import kind_of_picture
+    from cellcolor.door.drawing import Drawing, kind_of_picture
 
     if output is not None:
         kind = kind_of_picture(output)
@@ -82,7 +82,9 @@ def inspect(
         found = parts.inspect(part, unit=unit, time_limit=time_limit, progress=tell)
         if output is not None:
             tell("drawing")
-            drawn = parts.draw_inspection(found).render(output.suffix)
+            from cellcolor.pictures.mesh_picture import faulty_part
+
+            drawn = Drawing(faulty_part(found)).render(output.suffix)
     INTERRUPTS.check()
     with apart_from(output):
         if as_json:

@@ -62,7 +62,6 @@ def solve_files(
     schemes: int | None,
     time_limit: float | None,
     as_json: bool,
-    begun: float | None,
     **search: Any,
 ) -> Exit:
     """Solve every file; a bad one does not stop the others.
@@ -70,8 +69,6 @@ def solve_files(
     Args:
         schemes: how many optimal schemes are listed at most; None lists none.
         time_limit: seconds for each file.
-        begun: when the command began, on the clock of ``time.monotonic``: what it took to start
-            counts for the first file.
         search: what goes on to the front door's ``solve``.
     """
     targets = _targets(files, output, schemes is not None)
@@ -87,8 +84,7 @@ def solve_files(
 
     with apart_from(output):
         for file, target in zip(files, targets, strict=True):
-            deadline = Deadline.after(time_limit, begun)
-            begun = None
+            deadline = Deadline.after(time_limit)
             try:
                 result, lines = _solve(file, deadline, tolerance, schemes, search)
                 if target is not None:

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -209,7 +209,10 @@ def from_configurations(
     if not (circles > 0).all():
         raise InputError(None, "periods", "must be above 0")
     _check_size(bare, reach_m)
-    _check_angles(joints, circles)
+    if (far := np.argwhere(np.abs(joints) > MOST_TURNS * circles)).size:
+        vertex, number, joint = far[0].tolist()
+        message = f"is {joints[vertex, number, joint]:g}: are the angles in degrees?"
+        raise InputError(None, f"configurations[{vertex}][{number}][{joint}]", message)
     branch = _branches(names, sizes, joints.shape[1])
     span = None if limits is None else _limits(limits, joints.shape[2])
     there = np.asarray(np.isfinite(joints).all(axis=2))
@@ -234,6 +237,7 @@ def from_configurations(
         kept = cut_apart(there, edges, pairs, strength)
         color = components_of(there, edges, kept)
     doubtful = tuple(matching.noted)
+    unclear = sorted({(pair.i, pair.j) for pair in doubtful})
     surface = LabelledSurface(
         name,
         _color_names(names, color),
@@ -241,7 +245,7 @@ def from_configurations(
         bare.faces,
         tuple(tuple(own[own >= 0].tolist()) for own in color),
         _cracks(edges, color, kept),
-        _meta(doubtful),
+        {"doubtful_edges": list(map(list, unclear))} if unclear else {},
     )
     of_each = np.take_along_axis(color, first, axis=1)
     of_vertex = tuple(own[:size] for own, size in zip(of_each, sizes, strict=True))
@@ -324,14 +328,6 @@ def _check_size(surface: LabelledSurface, reach_m: float | None) -> None:
         raise InputError(None, "vertices", message)
 
 
-def _check_angles(joints: Array, periods: Array) -> None:
-    far = np.abs(joints) > MOST_TURNS * periods
-    if far.any():
-        vertex, number, joint = np.argwhere(far)[0].tolist()
-        message = f"is {joints[vertex, number, joint]:g}: are the angles in degrees?"
-        raise InputError(None, f"configurations[{vertex}][{number}][{joint}]", message)
-
-
 def _first_of_same(joints: Array, branch: Index, periods: Array) -> Index:
     """The first configuration (n, s) of the vertex that each one is the same as."""
     slots = joints.shape[1]
@@ -399,8 +395,3 @@ def _cracks(edges: Index, color: Index, matched: Index) -> tuple[Crack, ...]:
     return tuple(
         Crack(int(i[row]), int(j[row]), tuple(sorted(own))) for row, own in sorted(torn.items())
     )
-
-
-def _meta(doubtful: Sequence[DoubtfulPair]) -> dict[str, Any]:
-    edges = sorted({(pair.i, pair.j) for pair in doubtful})
-    return {"doubtful_edges": [list(edge) for edge in edges]} if edges else {}

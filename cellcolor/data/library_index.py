@@ -9,7 +9,6 @@ from typing import Annotated
 
 from pydantic import Field, NonNegativeInt
 
-from cellcolor.data.solution import SearchSpace
 from cellcolor.data.value import Document, Value
 from cellcolor.data.wording import span
 from cellcolor.errors import InputError
@@ -153,15 +152,6 @@ class LibraryEntry(Value):
         ):
             message = "a division of the search space paper is one of the surface"
             raise InputError(None, "surface.upper.value", message)
-
-    @property
-    def is_open(self) -> bool:
-        """Whether the minimum is not proved in one of the search spaces."""
-        return not (self.paper.proved and self.surface.proved)
-
-    def range_in(self, space: SearchSpace) -> KnownRange:
-        """Where the minimum lies in a search space."""
-        return self.paper if space == "paper" else self.surface
 
 
 @dataclass(frozen=True, slots=True)

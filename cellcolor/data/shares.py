@@ -41,13 +41,17 @@ class Shares:
         return all(least == most for least, most in self.segments)
 
 
+def cell_weights(instance: Instance) -> tuple[list[float], bool]:
+    """The area of each cell, or 1 for each where one is not known; and whether these are areas."""
+    known = [cell.area for cell in instance.cells if cell.area is not None]
+    measured = len(known) == len(instance.cells) and sum(known) > 0
+    return known if measured else [1.0] * len(instance.cells), measured
+
+
 def shares_of(instance: Instance, solution: Solution) -> Shares:
     """The shares of a solution that was found."""
-    areas = [cell.area for cell in instance.cells]
-    known = [area for area in areas if area is not None]
+    weights, measured = cell_weights(instance)
     coverage = instance.coverage
-    measured = len(known) == len(areas) and sum(known) > 0
-    weights = known if measured else [1.0] * len(areas)
     least = [0.0] * (solution.segments or 0)
     most = list(least)
     for cell, weight in zip(solution.cells or (), weights, strict=True):

@@ -26,8 +26,7 @@ from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError, refuse
 from cellcolor.files.documents import sha256_of, take_body
 from cellcolor.files.validation import json_content, settle
-from cellcolor.mesh.oriented import directed_edges
-from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.mesh.triangle_mesh import TriangleMesh, directed_edges
 
 _FARTHEST = 1e9  # m
 
@@ -175,7 +174,7 @@ class LabelledSurface(WithArrays, Document, Drawn):
     def left_of(self) -> dict[tuple[int, int], int]:
         """``{(i, j): k}`` for every triangle (i, j, k).
 
-        See :func:`~cellcolor.mesh.oriented.directed_edges`.
+        See :func:`~cellcolor.mesh.triangle_mesh.directed_edges`.
         """
         return directed_edges(self.faces, len(self.vertices))
 

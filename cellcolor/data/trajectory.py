@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, stretches
 from cellcolor.data.value import (
     Document,
     Integers,
@@ -153,10 +153,7 @@ class Trajectory(WithArrays, Document):
     @property
     def strokes(self) -> tuple[tuple[int, int], ...]:
         """First sample of each stroke, and the one after its last."""
-        steps = np.diff(np.concatenate([[0], self.contact.astype(np.int8), [0]]))
-        return tuple(
-            zip(np.flatnonzero(steps > 0).tolist(), np.flatnonzero(steps < 0).tolist(), strict=True)
-        )
+        return tuple(stretches(self.contact))
 
     @property
     def lift_offs(self) -> int:

@@ -145,6 +145,11 @@ def members_of(value: Any, always: Collection[str] = ()) -> dict[str, Any]:
     return found
 
 
+def named_members(value: Any, *names: str) -> dict[str, Any]:
+    """Some members and properties of a dataclass as JSON has them, in this order."""
+    return {name: _plain(getattr(value, name)) for name in names}
+
+
 def every_member_of(value: Any) -> dict[str, Any]:
     """The members of a dataclass as JSON has them, and null for what is None."""
     return {member.name: _plain(getattr(value, member.name), True) for member in fields(value)}
@@ -273,17 +278,15 @@ def _forms(form: Any) -> TypeAdapter[Any]:
 
 
 _Three = tuple[float, float, float]
-_NUMBERS = ArrayOf(tuple[float, ...], np.float64)
 _ROWS = ArrayOf(tuple[tuple[float, ...], ...], np.float64, 0)
 THREES = ArrayOf(tuple[_Three, ...], np.float64, 3)
-_TRIPLES = ArrayOf(tuple[tuple[int, int, int], ...], np.int64, 3)
-Numbers = Annotated[NDArray[np.float64], _NUMBERS]
+Numbers = Annotated[NDArray[np.float64], ArrayOf(tuple[float, ...], np.float64)]
 Integers = Annotated[NDArray[np.int64], ArrayOf(tuple[int, ...], np.int64)]
 Truths = Annotated[NDArray[np.bool_], ArrayOf(tuple[bool, ...], np.bool_)]
 Rows = Annotated[NDArray[np.float64], _ROWS]
 RowsWithGaps = Annotated[NDArray[np.float64], ArrayOf(_ROWS.form, np.float64, 0, gaps=True)]
 RowsOfThree = Annotated[NDArray[np.float64], THREES]
-Triples = Annotated[NDArray[np.int64], _TRIPLES]
+Triples = Annotated[NDArray[np.int64], ArrayOf(tuple[tuple[int, int, int], ...], np.int64, 3)]
 
 
 def check_lengths(value: Any, names: Collection[str], length: int, of: str) -> None:

@@ -10,7 +10,6 @@ mesh itself is closed with a virtual vertex outside, so that every mesh edge has
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.surface import LabelledSurface
@@ -18,6 +17,9 @@ from cellcolor.deadline import NEVER, Deadline
 
 Step = tuple[int, int]
 """A border where it crosses one mesh edge: the vertex on its left and the one on its right."""
+
+Curve = tuple[Step, ...]
+"""A topological edge as it lies on the mesh: the mesh edges that it crosses, in order."""
 
 
 class ClosedMesh:
@@ -35,28 +37,15 @@ class ClosedMesh:
         # Along a border of the mesh a is followed by successor[a] with the outside on the left.
         successor = {b: a for a, b in surface.left_of if (b, a) not in surface.left_of}
         while successor:
-            first = vertex = min(successor)
-            while True:
+            vertex = min(successor)
+            while vertex in successor:
                 following = successor.pop(vertex)
                 self.third[vertex, following] = virtual
                 self.third[following, virtual] = vertex
                 self.third[virtual, vertex] = following
                 vertex = following
-                if vertex == first:
-                    break
             virtual += 1
         self.vertex_count = virtual
-
-
-@dataclass(frozen=True, slots=True)
-class Curve:
-    """A topological edge as it lies on the mesh.
-
-    Attributes:
-        steps: the mesh edges it crosses, in order, each with the vertices left and right of it.
-    """
-
-    steps: tuple[Step, ...]
 
 
 class Borders:
@@ -66,7 +55,6 @@ class Borders:
         vertex_cell: the cell of each vertex; ``OUTSIDE`` where unreachable.
 
     Attributes:
-        mesh: the surface's mesh, the holes closed.
         cell_of: the cell of each vertex, those of virtual ones ``OUTSIDE``.
         steps: all mesh edges that a border crosses, each in both directions.
     """
@@ -101,9 +89,10 @@ class Borders:
         u, v = step
         w = self.mesh.third[u, v]
         crossed = 1 + ((u, w) in self.steps) + ((w, v) in self.steps)
-        return crossed != 2 or self._kind(step) != self._kind(self.following(step))
+        return crossed != 2 or self.kind(step) != self.kind(self.following(step))
 
-    def _kind(self, step: Step) -> tuple[int, int, frozenset[int]]:
+    def kind(self, step: Step) -> tuple[int, int, frozenset[int]]:
+        """The cells to the left and to the right, and the colors that may continue across."""
         u, v = step
         return self.cell_of[u], self.cell_of[v], self.joinable(u, v)
 
@@ -123,6 +112,6 @@ class Borders:
                 if following == first:
                     break
                 steps.append(following)
-            curves.append(Curve(tuple(steps)))
+            curves.append(tuple(steps))
             done.update(steps, (step[::-1] for step in steps))
         return curves

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import PurePath
 
 import numpy as np
@@ -14,8 +15,22 @@ from cellcolor.data.instance import Instance, SurfaceReference
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition.borders import Borders, ClosedMesh, Curve, Step
-from cellcolor.decomposition.on_mesh import Decomposition
 from cellcolor.errors import InputError
+
+
+@dataclass(frozen=True, slots=True)
+class Decomposition:
+    """A topological graph with the part of the mesh that each of its elements is.
+
+    Attributes:
+        instance: the graph.
+        curves: where each topological edge lies, by its id; empty if that is not known.
+        vertex_cell: the cell of each vertex, ``OUTSIDE`` where unreachable.
+    """
+
+    instance: Instance
+    curves: Mapping[int, Curve]
+    vertex_cell: tuple[int, ...]
 
 
 def decompose(
@@ -35,7 +50,6 @@ def decomposition_of(
 
     Args:
         path: where it is stored, relative to the instance; None leaves the reference out.
-        deadline: when to give up. The time grows in proportion to the mesh.
 
     Raises:
         InputError: a cell is not planar (its genus is not 0).
@@ -43,11 +57,10 @@ def decomposition_of(
     deadline.check()
     vertex_cell, firsts = pieces_of(surface, surface.vertex_colors, (), deadline)
     borders = Borders(surface, vertex_cell)
-    cell_of = borders.cell_of
     curves = borders.curves(deadline)
     loops = loops_of(borders, curves, deadline)
     _check_planar(surface, firsts, borders, loops, deadline)
-    areas = _areas(surface, vertex_cell)
+    areas = areas_of(surface, vertex_cell, len(firsts))
     cells = tuple(
         Cell(number, surface.vertex_colors[first], loops.get(number, ()), areas[number])
         for number, first in enumerate(firsts)
@@ -55,11 +68,9 @@ def decomposition_of(
     edges = []
     lengths = _lengths(surface, borders.mesh, curves)
     for number, (curve, length) in enumerate(zip(curves, lengths, strict=True), start=1):
-        left, right = curve.steps[0]
-        colors = None
-        if surface.cracked(left, right):
-            colors = tuple(sorted(borders.joinable(left, right)))
-        edges.append(Edge(number, cell_of[left], cell_of[right], colors, length))
+        left, right, joinable = borders.kind(curve[0])
+        colors = tuple(sorted(joinable)) if surface.cracked(*curve[0]) else None
+        edges.append(Edge(number, left, right, colors, length))
     deadline.check()
     reference = None
     if path is not None:
@@ -111,9 +122,8 @@ def loops_of(
     """Each cell's border loops, as cyclic lists of darts with the cell on the left."""
     dart_at: dict[Step, int] = {}
     for number, curve in enumerate(curves, start=1):
-        dart_at[curve.steps[0]] = number
-        last = curve.steps[-1]
-        dart_at[last[1], last[0]] = -number
+        dart_at[curve[0]] = number
+        dart_at[curve[-1][::-1]] = -number
     loops: dict[int, list[tuple[int, ...]]] = {}
     walked: set[Step] = set()
     for first in deadline.watch(dart_at):
@@ -122,13 +132,11 @@ def loops_of(
             continue
         darts = []
         step = first
-        while True:
+        while not darts or step != first:
             if step in dart_at:
                 walked.add(step)
                 darts.append(dart_at[step])
             step = borders.following(step)
-            if step == first:
-                break
         loops.setdefault(cell, []).append(tuple(darts))
     return {cell: tuple(found) for cell, found in loops.items()}
 
@@ -154,24 +162,21 @@ def _check_planar(
     for cell, first in enumerate(firsts):
         handles = 2 - len(loops.get(cell, ())) - characteristic[cell]
         if handles != 0:
-            raise InputError(
-                None,
-                f"vertices[{first}]",
-                f"lies in cell {cell}, which is not planar (genus {handles // 2})",
-            )
+            message = f"lies in cell {cell}, which is not planar (genus {handles // 2})"
+            raise InputError(None, f"vertices[{first}]", message)
 
 
-def _areas(surface: LabelledSurface, vertex_cell: list[int]) -> list[float]:
+def areas_of(surface: LabelledSurface, vertex_cell: Sequence[int], cells: int) -> list[float]:
     """Square metres of each cell."""
     owner = np.array(vertex_cell)
     reached = owner != OUTSIDE
-    sums = np.bincount(owner[reached], surface.vertex_areas[reached], max(vertex_cell) + 1)
+    sums = np.bincount(owner[reached], surface.vertex_areas[reached], cells)
     return [round(float(value), 12) for value in sums]
 
 
 def _lengths(surface: LabelledSurface, mesh: ClosedMesh, curves: list[Curve]) -> list[float]:
     """Metres along each curve, from triangle to triangle over the middles of mesh edges."""
-    steps = np.array([step for curve in curves for step in curve.steps], dtype=np.int64)
+    steps = np.array([step for curve in curves for step in curve], dtype=np.int64)
     if not len(steps):
         return []
 
@@ -191,6 +196,6 @@ def _lengths(surface: LabelledSurface, mesh: ClosedMesh, curves: list[Curve]) ->
     for a, b in ((left, right), (right, left)):
         ahead = np.array([mesh.third[pair] for pair in zip(a.tolist(), b.tolist(), strict=True)])
         total += np.linalg.norm(middles(np.column_stack([a, b, ahead])) - here, axis=1)
-    counts = [len(curve.steps) for curve in curves]
+    counts = [len(curve) for curve in curves]
     sums = np.add.reduceat(total, np.concatenate([[0], np.cumsum(counts)[:-1]]))
     return [round(float(value), 12) for value in sums]

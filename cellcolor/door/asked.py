@@ -66,7 +66,7 @@ def begun(given: Work) -> tuple[Deadline, Telling]:
         InputError: the time limit is no positive number of seconds.
     """
     _check_names(given, Work)
-    return Deadline.of(given.get("time_limit")), given.get("progress") or _nobody
+    return Deadline.of(given.get("time_limit")), given.get("progress") or (lambda _: None)
 
 
 def options_of(given: Search, kind: type[Search] = SearchAndTell) -> Options:
@@ -85,7 +85,3 @@ def _check_names(given: Mapping[str, Any], kind: type) -> None:
     for name in given:
         if name not in kind.__annotations__:
             raise TypeError(f"got an unexpected keyword argument {name!r}")
-
-
-def _nobody(_: str) -> None:
-    """Ignores progress when the caller gave no function for it."""

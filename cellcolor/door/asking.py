@@ -6,15 +6,15 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from cellcolor.deadline import Deadline
 from cellcolor.door.asked import SearchAndTell, Work, begun, options_of
+from cellcolor.door.drawing import kind_of_picture
 from cellcolor.door.installed import extras_for
 from cellcolor.door.subject import Solvable, open_subject, scene_or_file
 from cellcolor.errors import CellcolorError, InputError
-from cellcolor.files.writing import PNG, SVG, FileKind, Output, path_of, write
+from cellcolor.files.writing import Output, path_of, write
 from cellcolor.lab.workers import Task, Workers, as_they_end
 from cellcolor.questions.answers import Front
 from cellcolor.questions.placements import PlacedMinimum, PlacementQuestion, Placements, Pose
@@ -131,18 +131,6 @@ def place(
         return search_places(own, asked, alone, many, deadline, report)
 
 
-def kind_of_map(path: Path) -> FileKind:
-    """The kind of file for a map.
-
-    Raises:
-        InputError: no map has this suffix.
-    """
-    kind = {".png": PNG, ".svg": SVG}.get(path.suffix)
-    if kind is None:
-        raise InputError(str(path), None, "must end in .png or .svg")
-    return kind
-
-
 def save_map(found: Placements, path: str | PathLike[str]) -> None:
     """Draw the placements that :func:`place` tried to a file .png or .svg. Needs the extra ``viz``.
 
@@ -151,7 +139,7 @@ def save_map(found: Placements, path: str | PathLike[str]) -> None:
             cellcolor's, or it cannot be written.
     """
     file = path_of(path)
-    kind = kind_of_map(file)
+    kind = kind_of_picture(file, flat=True)
     with extras_for(f"a picture {file.suffix}"):
         from cellcolor.pictures.static import render_placements
 

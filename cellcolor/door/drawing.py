@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from numbers import Integral
 from os import PathLike
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from cellcolor.checker.division import check_solution
@@ -16,7 +17,7 @@ from cellcolor.checker.groups import regions_on_surface
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.door.installed import extras_for
-from cellcolor.door.subject import Result, Solvable, Subject, open_subject
+from cellcolor.door.subject import Result, Solvable, Subject, open_subject, solution_of
 from cellcolor.errors import InputError, naming
 from cellcolor.files.writing import HTML, PNG, SVG, FileKind, Output, path_of, write
 from cellcolor.pictures.picture import Picture2D, Picture3D
@@ -25,6 +26,7 @@ from cellcolor.pictures.registry import Picture, make_picture
 if TYPE_CHECKING:
     from cellcolor.checker.certificates import BoundVerdict
 
+_OPTIONS = ("color", "vertex", "branch", "solution", "plan", "marked")
 _KINDS = {".html": HTML, ".png": PNG, ".svg": SVG}
 
 
@@ -75,38 +77,16 @@ class Drawing:
         return f'<iframe srcdoc="{page}" width="100%" height="600" frameborder="0"></iframe>'
 
 
-@dataclass(frozen=True, slots=True)
-class View:
-    """Which picture is wanted, and its options.
-
-    Attributes:
-        name: of the picture, one of :data:`cellcolor.pictures.registry.PICTURES`.
-        solution: the solution to draw, or its file.
-        color: the color to draw, by name or number.
-        vertex: the vertex to put the arm on.
-        branch: the branch of the arm or of the reasons, by name or number.
-        plan: the plan of another planner, or its file.
-        marked: vertices of this plan to be pointed at.
-    """
-
-    name: str
-    solution: Solution | str | PathLike[str] | None = None
-    color: str | int | None = None
-    vertex: int | None = None
-    branch: str | int | None = None
-    plan: Plan | str | PathLike[str] | None = None
-    marked: Sequence[int] | None = None
-
-
-def kind_of_picture(path: Path) -> FileKind:
-    """The kind of file for a picture.
+def kind_of_picture(path: Path, *, flat: bool = False) -> FileKind:
+    """The kind of file for a picture, or for one that is ``flat`` and has no page.
 
     Raises:
         InputError: no picture has this suffix.
     """
-    kind = _KINDS.get(path.suffix)
+    kind = None if flat and path.suffix == ".html" else _KINDS.get(path.suffix)
     if kind is None:
-        raise InputError(str(path), None, "must end in .html, .png or .svg")
+        message = f"must end in {'' if flat else '.html, '}.png or .svg"
+        raise InputError(str(path), None, message)
     return kind
 
 
@@ -146,25 +126,15 @@ def show(
     """
     if path is not None:
         kind_of_picture(path_of(path))
-    if isinstance(solution, Result):
-        solution = solution.solution
     subject = source.subject if isinstance(source, Result) else open_subject(source)
     usual = _usual_view(source, subject)
     named = view is not None or any(one is not None for one in (color, vertex, solution, plan))
     wanted = view if named else usual
     if wanted in ("segments", "why") and solution is None and isinstance(source, Result):
         solution = source.solution
-    seen, picture = view_of(
-        view,
-        usual,
-        solution=solution,
-        color=color,
-        vertex=vertex,
-        branch=branch,
-        plan=plan,
-        marked=marked,
-    )
-    drawing = draw(picture, subject, seen)
+    given = (color, vertex, branch, solution, plan, marked)
+    options: dict[str, Any] = dict(zip(_OPTIONS, given, strict=True))
+    drawing = draw(picture_of(view, usual, options), subject, options)
     if path is not None:
         drawing.save(path)
     return drawing
@@ -178,13 +148,13 @@ def _usual_view(source: Solvable | Result, subject: Subject) -> str:
     return "segments" if found else "cells"
 
 
-def view_of(name: str | None, usual: str = "cells", **options: Any) -> tuple[View, Picture]:
+def picture_of(name: str | None, usual: str, options: Mapping[str, Any]) -> Picture:
     """The picture that is asked for, after checking its options.
 
     Args:
         name: of the picture; None for the one that an option asks for.
         usual: the picture if none does.
-        options: the other attributes of a :class:`View`.
+        options: of :func:`show`, None where one is not given.
 
     Raises:
         InputError: options ask for several pictures; there is no such picture, it needs another
@@ -196,27 +166,28 @@ def view_of(name: str | None, usual: str = "cells", **options: Any) -> tuple[Vie
         if len(names) > 1:
             raise InputError(None, None, "one of color, vertex, solution and plan at a time")
         name = names[0] if names else usual
-    picture, view = make_picture(name), View(name, **options)
-    for part in ("color", "vertex", "branch", "solution", "plan", "marked"):
-        given = getattr(view, part)
+    picture = make_picture(name)
+    for part in _OPTIONS:
+        given = options.get(part)
         if given is None and part in picture.needs:
             raise InputError(None, part, f"the picture {name} needs it")
         if given is not None and part not in picture.needs + picture.takes:
             raise InputError(None, part, f"the picture {name} does not take it")
-    return view, picture
+    return picture
 
 
-def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
+def draw(picture: Picture, subject: Subject, options: Mapping[str, Any]) -> Drawing:
     """Draw a picture from the inputs that it declares (``needs`` and ``takes``).
 
     Args:
-        picture: the picture of the view, see :func:`view_of`.
+        picture: see :func:`picture_of`.
         subject: the source of the inputs; they are made only if the picture uses them.
-        view: the options.
+        options: those that the picture was chosen by.
 
     Raises:
         InputError: an input is missing, or the inputs cannot be drawn together.
     """
+    view = SimpleNamespace(**{**dict.fromkeys(_OPTIONS), **options})
     file = None if subject.path is None else str(subject.path)
 
     def vertex(asked: object, field: str = "vertex") -> int:
@@ -253,8 +224,7 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
     if "surface" in picture.needs and not subject.names_surface:
         message = f"{subject.why_no_surface}; only the graph can be shown (--view graph)"
         raise InputError(file, "surface", message)
-    optional = ("color", "vertex", "branch", "solution", "marked")
-    missing = {part for part in optional if getattr(view, part) is None}
+    missing = {part for part in _OPTIONS if getattr(view, part) is None}
     missing |= {"build"} if subject.built is None else set()
     if not subject.names_surface:
         missing |= {"surface", "decomposition"}
@@ -275,12 +245,11 @@ def _number(names: tuple[str, ...], asked: str | int | None, file: str | None, f
 
 
 def _checked(
-    subject: Subject, claim: Solution | str | PathLike[str] | None, *, on_surface: bool
+    subject: Subject, claim: Solution | Result | str | PathLike[str], *, on_surface: bool
 ) -> tuple[Solution, tuple[BoundVerdict, ...]]:
     """A valid solution of the subject with a division, and the checker's verdicts on its bounds."""
-    assert claim is not None
-    file = None if isinstance(claim, Solution) else str(claim)
-    solution = claim if isinstance(claim, Solution) else Solution.read(claim)
+    file = str(claim) if isinstance(claim, (str, PathLike)) else None
+    solution = solution_of(claim)
     instance = subject.graph()
     regions = None
     if on_surface:

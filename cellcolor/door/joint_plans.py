@@ -48,16 +48,18 @@ class ContactColoring:
 
 
 @dataclass(frozen=True)
-class PathColors(ContactColoring):
+class PathColors:
     """The coloring that a path makes, and what is wrong with it.
 
     Attributes:
+        coloring: what its contacts make.
         strokes: of the path.
         violations: the vertices that get no contact in one of their colors.
         problems: the same in sentences, after those about samples.
         reachable: how many vertices have colors.
     """
 
+    coloring: ContactColoring
     strokes: int
     violations: tuple[JointViolation, ...]
     problems: tuple[str, ...]
@@ -142,8 +144,7 @@ def colors_of_path(subject: Subject, given: AnyPath, deadline: Deadline = NEVER)
         for sample, by in zip(found.misplaced.tolist(), found.misplaced_by.tolist(), strict=True)
     ]
     problems = (*misplaced, *map(str, violations))
-    wrong = tuple(violations), problems, len(reachable)
-    return PathColors(coloring.plan, coloring.color_changes, coloring.runs, path.strokes, *wrong)
+    return PathColors(coloring, path.strokes, tuple(violations), problems, len(reachable))
 
 
 def coloring_of(surface: LabelledSurface, contacts: VertexContacts) -> ContactColoring:

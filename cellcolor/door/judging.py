@@ -20,7 +20,7 @@ from cellcolor.door.asked import Search
 from cellcolor.door.installed import extras_for, find_claim
 from cellcolor.door.oracle import SECONDS, AnyPlan, Oracle
 from cellcolor.door.reading import ReadTrajectory, format_of_claim, read_trajectory
-from cellcolor.door.subject import Result, Solvable, Subject, open_subject
+from cellcolor.door.subject import Result, Solvable, Subject, open_subject, solution_of
 from cellcolor.oracle import ProvenRange, Verdict, prove
 from cellcolor.questions.places import Place
 
@@ -96,10 +96,7 @@ def check(
     subject = open_subject(instance).left_alone(left_alone)
     subject.check_graph()
     graph = subject.graph()
-    if isinstance(claim, Result):
-        claim = claim.solution
-    if not isinstance(claim, Solution):
-        claim = Solution.read(claim)
+    claim = solution_of(claim)
     regions = None
     if subject.given_surface is not None:
         cells = subject.decomposition.vertex_cell

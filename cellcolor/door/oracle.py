@@ -244,14 +244,15 @@ class Oracle:
 
     def _of_path(self, found: PathColors, deadline: Deadline) -> PathVerdict:
         """The verdict on a tool path, by what it comes to in colors."""
-        alike = ("plan", "strokes", "color_changes", "reachable")
-        about: dict[str, Any] = {name: getattr(found, name) for name in alike}
-        about |= {"surface": self.surface, "untouched": len(found.violations)}
+        coloring = found.coloring
+        about: dict[str, Any] = {"surface": self.surface, "plan": coloring.plan}
+        about |= {"strokes": found.strokes, "color_changes": coloring.color_changes}
+        about |= {"reachable": found.reachable, "untouched": len(found.violations)}
         if found.problems:
             return PathVerdict(found.problems, None, self._known, found.violations, **about)
-        of_colors = self._of_colors(found.plan, deadline)
+        of_colors = self._of_colors(coloring.plan, deadline)
         own = {member.name: getattr(of_colors, member.name) for member in fields(Verdict)}
-        return PathVerdict(**own | about, runs=found.runs)
+        return PathVerdict(**own | about, runs=coloring.runs)
 
     def __repr__(self) -> str:
         proved = "" if self._proof is None else f", {self._proof.bounds}"

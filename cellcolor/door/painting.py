@@ -16,7 +16,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.asked import Work, begun
 from cellcolor.door.installed import require_motion
-from cellcolor.door.subject import Result, Solvable, open_subject
+from cellcolor.door.subject import Result, Solvable, open_subject, solution_of
 from cellcolor.errors import InputError
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import Painted
@@ -57,10 +57,7 @@ def paint(
         TooLarge: the refined mesh would not fit into memory.
     """
     deadline = Deadline.of(time_limit)
-    if isinstance(solution, Result):
-        solution = solution.solution
-    elif not isinstance(solution, Solution):
-        solution = Solution.read(solution)
+    solution = solution_of(solution)
     subject = open_subject(source, deadline)
     surface, decomposition = subject.surface, subject.decomposition
     problems = check_solution(decomposition.instance, solution).problems

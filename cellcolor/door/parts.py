@@ -11,7 +11,6 @@ import numpy as np
 
 from cellcolor.deadline import Deadline
 from cellcolor.door.asked import Telling, Work, begun
-from cellcolor.door.drawing import Drawing
 from cellcolor.door.installed import extras_for
 from cellcolor.errors import InputError, naming
 from cellcolor.files.writing import path_of
@@ -72,22 +71,20 @@ def repair(
     """
     deadline, tell = begun(work)
     with _opened(part, deadline, tell) as (_, vertices, faces):
-        from cellcolor.frontend.parts.mesh_file import UNITS
+        from cellcolor.frontend.parts.mesh_file import UNITS, likely_unit
         from cellcolor.frontend.parts.repairing import LEAST_SHARE, repair_mesh
 
-        scale = UNITS[_unit(vertices, unit)]
+        reason = f"must be one of {', '.join(UNITS)}, is {unit!r}"
+        if unit is None:
+            extent = float(np.ptp(vertices, axis=0).max()) if len(vertices) else 0.0
+            unit, reason = likely_unit(extent)
+        scale = UNITS.get(unit or "")
+        if scale is None:
+            raise InputError(None, "unit", reason)
         share = LEAST_SHARE if least_component is None else least_component
         return repair_mesh(
             vertices, faces, scale, fill_holes_m, share, edge_length_m, deadline, tell
         )
-
-
-def draw_inspection(inspection: Inspection) -> Drawing:
-    """The part with its faulty places marked."""
-    with extras_for("a picture"):
-        from cellcolor.pictures.mesh_picture import faulty_part
-
-        return Drawing(faulty_part(inspection))
 
 
 @contextmanager
@@ -105,18 +102,3 @@ def _opened(part: Any, deadline: Deadline, tell: Telling) -> Iterator[tuple[str,
             return
         tell("reading")
         yield name, *read_mesh(path, deadline)
-
-
-def _unit(vertices: Any, unit: str | None) -> str:
-    """The given unit, or the likely one."""
-    from cellcolor.frontend.parts.mesh_file import UNITS, likely_unit
-
-    if unit is not None:
-        if unit not in UNITS:
-            raise InputError(None, "unit", f"must be one of {', '.join(UNITS)}, is {unit!r}")
-        return unit
-    extent = float(np.ptp(vertices, axis=0).max()) if len(vertices) else 0.0
-    likely, reason = likely_unit(extent)
-    if likely is None:
-        raise InputError(None, "unit", reason)
-    return likely

@@ -169,7 +169,6 @@ class PlannedScene(UnfinishedPlan):
         verdict: an independent judge's.
         seconds: wall time of each stage.
         answered: what was asked besides, for the page; None if nothing was.
-        made: the contents of all files but the page, if they are made already.
     """
 
     result: Result
@@ -180,7 +179,6 @@ class PlannedScene(UnfinishedPlan):
     verdict: TrajectoryVerdict
     seconds: Mapping[str, float]
     answered: AnsweredScene | None = None
-    made: Mapping[str, bytes] | None = None
 
     @property
     def solution(self) -> Solution:
@@ -234,9 +232,6 @@ class PlannedScene(UnfinishedPlan):
         )
 
     def files(self, export_step_s: float | None = None) -> dict[str, bytes]:
-        if self.made is not None:
-            again = {} if export_step_s is None else exported(self._motion(export_step_s))
-            return {**self.made, **again}
         return {
             **super().files(),
             "trajectory.json": self.trajectory.to_json().encode(),
@@ -307,10 +302,6 @@ class PlanOutOfTime(OutOfTime):
         self.unfinished = unfinished
         super().__init__(unfinished.missing)
 
-    def __reduce__(self) -> tuple[type[PlanOutOfTime], tuple[UnfinishedPlan]]:
-        # Python would hand the text to __init__, which takes the plan.
-        return type(self), (self.unfinished,)
-
 
 class NothingCovered(InputError):
     """No point of the object can be covered.
@@ -322,10 +313,6 @@ class NothingCovered(InputError):
     def __init__(self, report: BuildReport, file: str | None) -> None:
         self.report = report
         super().__init__(file, None, report.nothing_covered or "there is nothing to cover")
-
-    def __reduce__(self) -> tuple[type[NothingCovered], tuple[BuildReport, str | None]]:
-        # As in InputError.
-        return type(self), (self.report, self.file)
 
 
 SIDE, SURFACE = "instance.reasons.npz", "instance.surface.json"

@@ -123,13 +123,9 @@ def plan(
     )
     if not ask:
         return planned
-    with clock.timed("files"):
-        files = planned.files()
-    # The page is made after the answers, in less time than all other files have taken.
-    in_time = deadline.earlier(clock.seconds["files"])
     with clock.timed("questions"):
-        answered, unanswered = _answered(ask, whole, in_time, progress)
-    return replace(planned, answered=answered, unanswered=unanswered, made=files)
+        answered, unanswered = _answered(ask, whole, deadline, progress)
+    return replace(planned, answered=answered, unanswered=unanswered)
 
 
 class _Run:
@@ -227,7 +223,7 @@ class _Run:
                 progress=self._progress,
             )
         if len(painting.painted.minima) > 1:  # the surface was refined and solved again
-            subject = Subject(subject.path, painting.built, painting.built.surface)
+            subject = Subject(subject.path, painting.built)
             result = self._with_notes(Result(painting.solution, subject))
         self._has(subject=subject, result=result, painted=painting.painted)
         with self._clock.timed("motion"):
@@ -258,7 +254,7 @@ def _without_cut_off(driven: _Driven) -> Subject | None:
     surface = built.surface.without_colors(driven.planned.cut_off)
     if surface.vertex_colors == built.surface.vertex_colors:
         return None
-    return Subject(driven.subject.path, replace(built, surface=surface), surface)
+    return Subject(driven.subject.path, replace(built, surface=surface))
 
 
 def _cut_off_in_words(driven: _Driven) -> str:
@@ -285,7 +281,7 @@ def _built(prepared: PreparedScene, path: Path | None, clock: StageClock) -> Sub
     from cellcolor.frontend.build import build_prepared
 
     built = build_prepared(prepared, clock)
-    subject = Subject(path, built, built.surface)
+    subject = Subject(path, built)
     if subject.graph(clock.deadline).nothing_to_cover:
         raise NothingCovered(built.report, str(prepared.scene.file or "") or None)
     return subject

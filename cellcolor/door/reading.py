@@ -112,15 +112,15 @@ def color_numbers(surface: LabelledSurface, plan: Any) -> Any:
     Raises:
         InputError: an array of another kind, or a name that the surface does not have.
     """
-    if isinstance(plan, np.ndarray) and plan.ndim == 1 and plan.dtype.kind == "i":
-        return [None if color == -1 else color for color in plan.tolist()]
-    if isinstance(plan, np.ndarray) and plan.ndim == 2:
-        message = (
-            f"is an array {plan.shape}; pass joint angles as cellcolor.JointPlan, a row "
-            "for each vertex, or as cellcolor.ContactPath, a row for each sample"
-        )
-        raise InputError(None, "vertex_colors", message)
     if isinstance(plan, np.ndarray):
+        if plan.ndim == 1 and plan.dtype.kind == "i":
+            return [None if color == -1 else color for color in plan.tolist()]
+        if plan.ndim == 2:
+            message = (
+                f"is an array {plan.shape}; pass joint angles as cellcolor.JointPlan, a row "
+                "for each vertex, or as cellcolor.ContactPath, a row for each sample"
+            )
+            raise InputError(None, "vertex_colors", message)
         if plan.dtype.kind not in "iuUO":
             wanted = "color numbers (-1 for none) or names"
             message = f"must be {wanted}, is an array of {plan.dtype}"

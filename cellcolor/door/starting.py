@@ -42,7 +42,6 @@ from cellcolor.files.writing import (
 )
 
 if TYPE_CHECKING:
-    from cellcolor.frontend.arm.robot import Robot
     from cellcolor.frontend.parts.inspection import Inspection
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.frontend.setup import Setup
@@ -307,21 +306,16 @@ def part_keys_of(
 def _found(prepared: PreparedScene, home: list[float] | None) -> dict[str, str]:
     """The keys of the setup's file that only the prepared scene tells."""
     robot = prepared.robot
+    velocities = f"joint_velocities_rad_per_s = {json.dumps([1.0] * _JOINTS)}"
+    if np.isnan(robot.velocity).any():
+        velocities += "  # the URDF lacks them: take the data sheet's"
+    else:
+        velocities = f"# {velocities}  # lower than the URDF's"
     return {
-        "accelerations": json.dumps([_ACCELERATION] * robot.joints),
-        "jerks": json.dumps([_JERK] * robot.joints),
-        "velocities": _velocities(robot),
+        "velocities": velocities,
         "home": "# home_rad = []" if home is None else f"home_rad = {json.dumps(home)}",
         "joints": ", ".join(robot.joint_names),
     }
-
-
-def _velocities(robot: Robot) -> str:
-    """The line on velocities, which is needed where the URDF has none."""
-    lacks = bool(np.isnan(robot.velocity).any())
-    line = f"joint_velocities_rad_per_s = {json.dumps([1.0] * robot.joints)}"
-    why = "the URDF lacks them: take the data sheet's" if lacks else "lower than the URDF's"
-    return f"{'' if lacks else '# '}{line}  # {why}"
 
 
 def _notes(prepared: PreparedScene, arm: FoundArm, own_tool: bool) -> Iterator[str]:

@@ -19,7 +19,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.value import Drawn, read_one_of
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of, locate
-from cellcolor.decomposition.same_graph import wrong_cell
+from cellcolor.decomposition.on_mesh import wrong_cell
 from cellcolor.door.installed import extras_for, find_file
 from cellcolor.errors import InputError, naming
 from cellcolor.files.writing import Output, path_of, write
@@ -51,6 +51,10 @@ class Subject:
     given_instance: Instance | None = None
     _decomposed: Decomposition | None = field(default=None, init=False, repr=False, compare=False)
 
+    def __post_init__(self) -> None:
+        if self.built is not None and self.given_surface is None:
+            self.given_surface = self.built.surface
+
     @property
     def warnings(self) -> tuple[str, ...]:
         """Likely mistakes in a scene, one sentence each."""
@@ -73,18 +77,9 @@ class Subject:
     def _made(self, deadline: Deadline = NEVER) -> Decomposition:
         """The decomposition of the surface, made once."""
         if self._decomposed is None:
-            self._decomposed = self.decomposed(self._reference, deadline)
+            with naming(self.path):
+                self._decomposed = decomposition_of(self.surface, self._reference, deadline)
         return self._decomposed
-
-    def decomposed(self, reference: str | None, deadline: Deadline = NEVER) -> Decomposition:
-        """The decomposition of the surface, made again; see :meth:`graph`.
-
-        Args:
-            reference: where the instance's file will say that the surface is; None leaves it out.
-            deadline: when the decomposition has to end.
-        """
-        with naming(self.path):
-            return decomposition_of(self.surface, reference, deadline)
 
     @cached_property
     def decomposition(self) -> Decomposition:
@@ -179,8 +174,7 @@ class Subject:
     def without_vertices(self, mask: Mask) -> Subject:
         """Without colors at some vertices (n,) of the surface."""
         if self.built is not None:
-            built = self.built.without(mask)
-            return Subject(self.path, built, built.surface)
+            return Subject(self.path, self.built.without(mask))
         return Subject(None, given_surface=self.surface.without_vertices(mask))
 
     def check_graph(self, deadline: Deadline = NEVER) -> str | None:
@@ -258,17 +252,15 @@ def open_subject(
     if isinstance(source, LabelledSurface):
         return Subject(None, given_surface=source)
     if is_made_by(source, "cellcolor.frontend.build", "BuildResult"):
-        return Subject(None, source, source.surface)  # type: ignore[arg-type, union-attr]
+        return Subject(None, source)  # type: ignore[arg-type]
     if is_made_by(source, "cellcolor.frontend.scene", "Scene"):
-        built = build_scene(source, deadline, progress)  # type: ignore[arg-type]
-        return Subject(None, built, built.surface)
+        return Subject(None, build_scene(source, deadline, progress))  # type: ignore[arg-type]
     if not isinstance(source, (str, PathLike)):
         message = f"must be a scene, a surface, an instance or a file of one, is {source!r:.100}"
         raise InputError(None, None, message)
     path = find_file(source)
     if is_scene(path):
-        built = build_scene(path, deadline, progress)
-        return Subject(path, built, built.surface)
+        return Subject(path, build_scene(path, deadline, progress))
     found = read_graph(path)
     if isinstance(found, Instance):
         return Subject(path, given_instance=found)
@@ -389,3 +381,14 @@ class Result(Drawn):
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self.instance.name!r}: {self}>"
+
+
+def solution_of(claim: Solution | Result | str | PathLike[str]) -> Solution:
+    """The solution that is given: by itself, in a result, or in a file.
+
+    Raises:
+        InputError: the file cannot be used.
+    """
+    if isinstance(claim, Result):
+        return claim.solution
+    return claim if isinstance(claim, Solution) else Solution.read(claim)

@@ -40,7 +40,6 @@ class StageClock:
     """What one build has spent its time on.
 
     Attributes:
-        deadline: when to give up.
         seconds: wall time of each timed stage, in the order in which they first ended; of a stage
             that came several times, the sum.
     """
@@ -50,11 +49,7 @@ class StageClock:
         self.seconds: dict[str, float] = {}
 
     def begin(self, stage: str) -> None:
-        """A stage begins.
-
-        Raises:
-            OutOfTime: the deadline has come.
-        """
+        """A stage begins."""
         self.deadline.check()
         if self._progress is not None:
             self._progress(stage)
@@ -239,9 +234,6 @@ def build_surface(
 ) -> BuildResult:
     """Compute which colors reach each point of a scene's object.
 
-    Args:
-        scene: the scene, or the name of its file.
-
     Raises:
         InputError: the scene, its setup, a URDF or a mesh cannot be used; names file and field.
     """
@@ -263,7 +255,6 @@ def build_prepared(prepared: PreparedScene, clock: StageClock) -> BuildResult:
     Raises:
         InputError: there are too many vertices for the turns of the tool; a displaced part stands
             in a link that cannot move; a tolerance asks for an arm whose solutions have names.
-        OutOfTime: the clock's deadline came first.
     """
     with naming(prepared.scene.file):
         verdicts, continuous, linked = _judged(prepared, clock)
@@ -311,7 +302,7 @@ def _judged(prepared: PreparedScene, clock: StageClock) -> tuple[Verdicts, Mask,
     are continuous, and which of them are valid between the vertices as well."""
     verdicts = judged_at_vertices(prepared, clock)
     with clock.timed("continuity"):
-        edges = prepared.surface.edges()
+        edges = prepared.surface.mesh.edges
         continuous = continuous_along(prepared, edges, verdicts, clock.deadline)
     with clock.timed("validity between vertices"):
         linked = valid_along(prepared, verdicts, continuous, clock.deadline)
@@ -331,18 +322,16 @@ def colored(
     """A labelled surface, from what the tests have found.
 
     Args:
-        verdicts: on all candidates.
         continuous: (edges, branches) along which mesh edges a branch moves without a jump.
         linked: those that are valid between the vertices as well.
-        clock: the time they have taken.
     """
     surface, branches = prepared.surface, prepared.arm.kinematics.branches
     with clock.timed("colors and cracks"):
-        edges, policy, report = surface.edges(), prepared.setup.slivers, None
+        edges, policy, report = surface.mesh.edges, prepared.setup.slivers, None
         coloring = all_colors = color_nodes(verdicts.valid, edges, linked, branches)
         clock.deadline.check()
         if policy is not None:
-            areas = surface.vertex_areas()
+            areas = surface.mesh.vertex_areas
             kept, report = clean(edges, all_colors, areas, policy, clock.deadline)
             coloring = color_nodes(kept, edges, linked & kept[edges].all(axis=1), branches)
     clock.begin("surface")
@@ -378,7 +367,7 @@ def _limited(prepared: PreparedScene, verdicts: Verdicts, coloring: Coloring) ->
     if not prepared.setup.constraints.collision:  # joint limits are not asked about either
         nowhere = np.full(robot.joints, np.inf)
         robot = replace(robot, lower=-nowhere, upper=nowhere)
-    return limit_colors(robot, coloring, verdicts.configurations, prepared.surface.edges())
+    return limit_colors(robot, coloring, verdicts.configurations, prepared.surface.mesh.edges)
 
 
 def _vertex_colors(limits: LimitColors, vertices: int) -> tuple[tuple[int, ...], ...]:

@@ -150,7 +150,7 @@ def valid_along(
     if spacing is None:
         return continuous
     surface, linked = prepared.surface, continuous.copy()
-    edges = surface.edges()
+    edges = surface.mesh.edges
     near_border, asked = at_domain_border(edges, verdicts.valid), continuous
     if known is not None:
         # Which points of an edge are tested depends on what is valid at the neighbors of its ends.

@@ -58,7 +58,6 @@ class PreparedScene(Workplace):
         part: in its own frame.
         surface: the surface to be covered, in the world.
         notes: likely mistakes in robot and mesh, one sentence each.
-        left_out: names of tests that are not made.
     """
 
     scene: Scene
@@ -120,9 +119,6 @@ class PreparedScene(Workplace):
 def prepare(scene: Scene | str | PathLike[str], deadline: Deadline = NEVER) -> PreparedScene:
     """Read what a scene and its setup name, and put it in place.
 
-    Args:
-        scene: a scene, or the name of its file.
-
     Raises:
         InputError: a file cannot be used, the object stands in a link that cannot move, or the
             scene asks for more vertices or points than fit; names file and field.
@@ -139,7 +135,7 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     covered = scene.covered(deadline)
     surface, reach = covered.placed(scene.placement), arm.kinematics.reach
     check_part(surface, scene, reach, arm.robot.base_frame(None)[:3, 3])
-    lengths = surface.lengths(surface.edges())
+    lengths = surface.lengths(surface.mesh.edges)
     with naming(setup.file):
         check_setup(setup, surface, scene, reach)
         for key in ("probe_spacing_m", "validity_spacing_m"):

@@ -184,10 +184,10 @@ def _threshold(threshold: str, given: str) -> Relaxation:
 
 def _lowered(prepared: PreparedScene, amount: float) -> PreparedScene:
     ground = prepared.ground
-    if ground is not None:
-        lower = replace(ground, offset_m=ground.offset_m - amount)
-        ground = lower if np.isfinite(amount) else None
-    return _with_room(prepared, ground=ground)
+    if ground is None or not np.isfinite(amount):
+        return _with_room(prepared, ground=None)
+    lower = ground.moved(np.eye(3), -amount * ground.rotation[:, 2])
+    return _with_room(prepared, ground=lower)
 
 
 _GROUND = Relaxation(
@@ -210,7 +210,7 @@ def _obstacle(prepared: PreparedScene, here: int) -> Relaxation:
         if np.isfinite(amount):
             vertices, _ = obstacle.shell(there.scene.folder)
             surface, middle = there.surface, obstacle.placed(vertices).mean(axis=0)
-            away = middle - np.average(surface.vertices, axis=0, weights=surface.vertex_areas())
+            away = middle - np.average(surface.vertices, axis=0, weights=surface.mesh.vertex_areas)
             step = amount * away / max(float(np.linalg.norm(away)), 1e-9)
             position = tuple((np.array(obstacle.position_m) + step).tolist())
             moved = obstacle.model_copy(update={"position_m": position})
@@ -290,7 +290,7 @@ def built_asking_less(
         reasons: the tests that ask for less. A candidate becomes valid only if one of them was the
             first that it failed.
     """
-    deadline, edges = clock.deadline, prepared.surface.edges()
+    deadline, edges = clock.deadline, prepared.surface.mesh.edges
     codes = [prepared.judge.reason_names.index(reason) for reason in reasons]
     clock.begin("validity at the vertices")
     verdicts = _judged_there(prepared, before, np.isin(before.reasons, codes), deadline)
@@ -316,7 +316,7 @@ def built_asking_more(
         before: of the scene that asks for less. Its arm's solutions have names.
         reasons: the tests that ask for more.
     """
-    deadline, edges = clock.deadline, prepared.surface.edges()
+    deadline, edges = clock.deadline, prepared.surface.mesh.edges
     strict = replace(prepared, left_out=frozenset(prepared.judge.reason_names) - set(reasons))
     clock.begin("validity at the vertices")
     verdicts = _judged_there(strict, before, before.verdicts.valid, deadline)

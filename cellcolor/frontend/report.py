@@ -56,15 +56,12 @@ class BuildReport:
     """What a build found.
 
     Attributes:
-        survey: where the object is.
-        vertices: of the surface.
         reachable: vertices with at least one valid configuration.
         area_m2: of the whole surface.
         reachable_area_m2: of the reachable vertices.
         candidates: how many of the vertex-branch candidates ended with each reason.
         unreachable: how many unreachable vertices have each reason; counted for the branch that
             passed the most tests.
-        colors: see :class:`ColorReport`.
         cracks: number of mesh edges with a crack.
         notes: likely mistakes in robot and mesh, one sentence each.
         stand_ins: what collides in the place of the meshes of links, and how far off it is.
@@ -170,7 +167,7 @@ def report_on(built: BuildResult) -> BuildReport:
     """What a build found."""
     prepared, verdicts, limits = built.prepared, built.verdicts, built.limits
     surface, names = prepared.surface, verdicts.reason_names
-    areas, reached = surface.vertex_areas(), verdicts.valid.any(axis=1)
+    areas, reached = surface.mesh.vertex_areas, verdicts.valid.any(axis=1)
     # Codes are in the order of the tests.
     farthest = verdicts.reasons.max(axis=1)[~reached]
     remarks = prepared.arm.kinematics.remarks(surface.vertices, -surface.normals)
@@ -215,7 +212,7 @@ def _color_reports(
     vertex, branch = np.nonzero(coloring.node_color >= 0)
     color = coloring.node_color[vertex, branch]
     sizes = np.bincount(color, minlength=len(coloring.names)).tolist()
-    areas = surface.vertex_areas()[vertex]
+    areas = surface.mesh.vertex_areas[vertex]
     domains = np.bincount(color, areas, minlength=len(coloring.names)).tolist()
     return tuple(
         ColorReport(name, branch_names[number], size, area)

@@ -10,7 +10,6 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Mask
 from cellcolor.deadline import Deadline
-from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
 from cellcolor.motion.courses import Course, laid_out
@@ -24,8 +23,6 @@ from cellcolor.tool_paths.region import Overlap, Segments
 _SHORT = 2.0  # spacings; no place of such a stroke is as large as a footprint
 _SPARED = 0.005  # of the strokes' length, at most, of what is left out because it is short
 
-_ROUNDS = 3  # of paths laid out so that no joint leaves its limits
-_FEW = 0.01  # of the samples, that may be beyond the limits to be left out
 _AROUND = 0.2  # spacings; so far from a sample that fails no path is laid
 
 
@@ -34,12 +31,8 @@ class Ground:
     """What the strokes of all segments have in common.
 
     Attributes:
-        prepared: the scene.
         segments: of the painted surface.
         states: what the arm does at the corners of its small triangles.
-        pattern: of the tool paths.
-        motion: of the setup.
-        deadline: when to give up.
     """
 
     prepared: PreparedScene
@@ -58,17 +51,9 @@ def strokes_of(
     They go beyond the segment's border if neighbors are to overlap and one stroke is enough then.
     Walls are put up only where a joint would exceed its limits without them.
 
-    Args:
-        ground: what they are made on.
-        segment: its number.
-        branch: of its color.
-
     Returns:
         Its tool paths, the strokes on them, each within the limits of the joints, and the walls,
         mesh edges, that were put up for that.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     segments, motion, space = ground.segments, ground.motion, joint_space(ground.prepared)
     own = segments.segment_of == segment
@@ -128,49 +113,22 @@ def _between_walls(
     Args:
         parted: how many strokes there are without walls.
     """
-    prepared, surface, mesh = ground.prepared, ground.segments.surface, ground.states.small.whole
-    space = joint_space(prepared)
+    surface, mesh = ground.segments.surface, ground.states.small.whole
+    space, names = joint_space(ground.prepared), ground.prepared.robot.joint_names
     color = ground.segments.colors[segment]
     cracks = [crack for crack in surface.cracks if color in crack.colors]
     closed = mesh.marked([(crack.i, crack.j) for crack in cracks])
     steps = steps_of(ground.states, segment, closed)
-    walls, joint = walls_of(steps, mesh, space, ground.deadline)
-    for _ in range(_ROUNDS):
-        covered, courses = _courses(ground, segment, branch, refusals, walls)
-        strokes = _on(ground, courses, branch)
-        if not _refuse_what_is_beyond(courses, strokes, space, refusals):
-            break
+    walls, joint = walls_of(steps, space)
+    covered, courses = _courses(ground, segment, branch, refusals, walls)
+    strokes = _on(ground, courses, branch)
     if joint is not None:
-        text = f"{prepared.robot.joint_names[joint]} cannot follow the whole segment"
+        text = f"{names[joint]} cannot follow the whole segment"
         for at in range(parted, len(strokes)):
-            parting = Parting.at("winding", text, strokes[at].points[0])
+            parting = Parting("winding", text, strokes[at].points[0])
             strokes[at] = replace(strokes[at], parting=parting)
-    cut = [
-        part
-        for stroke in strokes
-        for part in cut_where_full(stroke, space, prepared.robot.joint_names)
-    ]
+    cut = [part for stroke in strokes for part in cut_where_full(stroke, space, names)]
     return covered, _worth_a_lift_off(cut, ground.motion.spacing_m), walls
-
-
-def _refuse_what_is_beyond(
-    courses: list[Course], strokes: list[Stroke], space: JointSpace, refusals: ArmRefusals
-) -> bool:
-    """Keep paths off the few samples at which a stroke is beyond the limits; whether there are any.
-
-    Between two vertices a joint may turn on, beside a wrist that is nearly straight, by more than
-    walls know of.
-    """
-    points = [stroke.points[space.beyond(stroke.joints)] for stroke in strokes]
-    beyond = np.concatenate([np.empty((0, 3)), *points])
-    if not 0 < len(beyond) <= _FEW * sum(len(stroke) for stroke in strokes):
-        return False
-    samples = [course.samples for course in courses]
-    faces = np.concatenate([own.faces for own in samples])
-    nearest = cKDTree(np.concatenate([own.points for own in samples])).query(beyond)[1]
-    for face, point in zip(faces[nearest].tolist(), beyond, strict=True):
-        refusals.add(face, point, "joint limits")
-    return True
 
 
 def _on(ground: Ground, courses: list[Course], branch: int) -> list[Stroke]:
@@ -183,7 +141,7 @@ def _on(ground: Ground, courses: list[Course], branch: int) -> list[Stroke]:
         parts = trimmed(segment, branch, course.samples, course.followed, spacing, names, space)
         if parts and found:
             text = "places that no sample may touch divide the segment"
-            parting = Parting.at("trimmed", text, course.path.points[0])
+            parting = Parting("trimmed", text, course.path.points[0])
             parts[0] = replace(parts[0], parting=parting)
         found += parts
     return _worth_a_lift_off(found, spacing)

@@ -150,7 +150,7 @@ def steps_by_edge(
     """
     dart_of: dict[Step, int] = {}
     for edge, curve in old_curves.items():
-        for a, b in curve.steps:
+        for a, b in curve:
             dart_of[a, b] = edge
             dart_of.setdefault((b, a), -edge)
     count, old_count = len(refined.mesh.points), len(refined.old.vertices)
@@ -158,10 +158,9 @@ def steps_by_edge(
     found: dict[int, list[Step]] = {}
     for curve in curves:
         # Vertices beyond the last close the holes of the mesh, in the same order on both.
-        a, b = (origin[v] if v < count else v - count + old_count for v in curve.steps[0])
+        a, b = (origin[v] if v < count else v - count + old_count for v in curve[0])
         dart = dart_of[a, b]
-        steps = list(curve.steps)
-        found[abs(dart)] = steps if dart > 0 else [(b, a) for a, b in reversed(steps)]
+        found[abs(dart)] = list(curve) if dart > 0 else [(b, a) for a, b in reversed(curve)]
     return found
 
 

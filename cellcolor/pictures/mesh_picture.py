@@ -180,8 +180,7 @@ def eye(
         aside = (ways**2).sum(axis=1, keepdims=True) - along**2
         hidden = ((along > 0.1) & (aside < 0.06**2)).any(axis=0) | (eyes @ normal < 0.1)
         score -= hidden / len(seen_past)
-    best: Array = eyes[np.argmax(score)]
-    return best
+    return np.asarray(eyes[np.argmax(score)])
 
 
 _MOST = 60_000  # faces drawn; a larger part is thinned evenly to this many

@@ -189,8 +189,7 @@ def _shaded(triangles: Array, rgb: str) -> Array:
     corners = np.arange(3 * len(triangles)).reshape(-1, 3)
     normals = TriangleMesh(triangles.reshape(-1, 3), corners).triangle_normals
     light = 0.86 + 0.14 * (np.nan_to_num(normals) @ _LIGHT)
-    shaded: Array = np.array(to_rgb(rgb)) * light[:, None]
-    return shaded
+    return np.asarray(np.array(to_rgb(rgb)) * light[:, None])
 
 
 def _scale(axes: Axes, flat: Array, span: float) -> None:

@@ -177,17 +177,15 @@ def _path(start: Array, out: Array, end: Array, into: Array) -> Array:
     reach = max(0.45 * float(np.linalg.norm(end - start)), 0.4)
     a, b = start + reach * out, end + reach * into
     t = np.linspace(0, 1, _SAMPLES)[:, None]
-    path: Array = (
+    return np.asarray(
         (1 - t) ** 3 * start + 3 * t * (1 - t) ** 2 * a + 3 * t**2 * (1 - t) * b + t**3 * end
     )
-    return path
 
 
 def _beside(path: Array, offset: float) -> Array:
     tangents = np.gradient(path, axis=0)
     tangents /= np.maximum(np.linalg.norm(tangents, axis=1, keepdims=True), 1e-12)
-    beside: Array = path + offset * np.column_stack([-tangents[:, 1], tangents[:, 0]])
-    return beside
+    return np.asarray(path + offset * np.column_stack([-tangents[:, 1], tangents[:, 0]]))
 
 
 def _arc(center: Array, radius: float, start: float, end: float, *, hub: bool) -> Array:

@@ -6,9 +6,10 @@ cross each other.
 
 from __future__ import annotations
 
-from collections import deque
 from itertools import combinations
+from typing import Any
 
+import networkx as nx
 import numpy as np
 
 from cellcolor.arrays import Index, Mask
@@ -77,24 +78,17 @@ def view_of(
 
 def _way(surface: LabelledSurface, color: int, near: Mask, far: Mask) -> list[int]:
     """Vertices of a shortest way in one color from one area to another; none if there is none."""
-    beside: dict[int, list[int]] = {}
-    for a, b in surface.left_of:
-        both = color in surface.vertex_colors[a] and color in surface.vertex_colors[b]
-        if both and color not in surface.cracked(a, b):
-            beside.setdefault(a, []).append(b)
-            beside.setdefault(b, []).append(a)
-    starts = [int(vertex) for vertex in np.flatnonzero(near)]
-    came = {vertex: vertex for vertex in starts}
-    todo = deque(starts)
-    while todo:
-        vertex = todo.popleft()
-        if far[vertex]:
-            way = [vertex]
-            while came[way[-1]] != way[-1]:
-                way.append(came[way[-1]])
-            return way
-        for other in beside.get(vertex, ()):
-            if other not in came:
-                came[other] = vertex
-                todo.append(other)
-    return []
+    graph: nx.Graph[Any] = nx.Graph(
+        (a, b)
+        for a, b in surface.left_of
+        if color in surface.vertex_colors[a]
+        and color in surface.vertex_colors[b]
+        and color not in surface.cracked(a, b)
+    )
+    graph.add_edges_from(("near", vertex) for vertex in np.flatnonzero(near).tolist())
+    graph.add_edges_from((vertex, "far") for vertex in np.flatnonzero(far).tolist())
+    try:
+        way: list[int] = nx.shortest_path(graph, "near", "far")[1:-1]
+        return way
+    except nx.NetworkXException:  # no way, or nothing to lead from or to
+        return []

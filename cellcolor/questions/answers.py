@@ -8,6 +8,7 @@ from typing import Any
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
+from cellcolor.data.value import named_members
 from cellcolor.data.wording import check_share, count, lift_offs_of
 from cellcolor.errors import InputError
 
@@ -71,14 +72,8 @@ class FrontPoint:
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
-        return {
-            "lift_offs": self.lift_offs,
-            "segments": self.segments,
-            "covered_share": self.covered_share,
-            "at_most_share": self.at_most_share,
-            "proved_for_surface": self.proved_for_surface,
-            "left_out": list(self.left_out),
-        }
+        shares = ("covered_share", "at_most_share", "proved_for_surface", "left_out")
+        return named_members(self, "lift_offs", "segments", *shares)
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,17 +198,9 @@ class RelaxedMinimum:
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
-        return {
-            "relaxed": list(self.relaxed),
-            "keys": list(self.keys),
-            "lift_offs": self.lift_offs,
-            "segments": self.segments,
-            "at_least_segments": self.at_least,
-            "covered_share": self.covered_share,
-            "surface_share": self.surface_share,
-            "proved_for_surface": self.proved_for_surface,
-            "note": self.note,
-        }
+        found = named_members(self, "relaxed", "keys", "lift_offs", "segments")
+        shares = named_members(self, "covered_share", "surface_share", "proved_for_surface", "note")
+        return found | {"at_least_segments": self.at_least} | shares
 
     def __str__(self) -> str:
         what = f"; {' and '.join(self.relaxed)}" if self.relaxed else ""

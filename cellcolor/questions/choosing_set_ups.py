@@ -25,11 +25,11 @@ from ortools.sat.python import cp_model
 
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.solution import Solution
-from cellcolor.data.surface import Crack, LabelledSurface
-from cellcolor.data.wording import check_change_over
+from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
+from cellcolor.questions.set_ups import Region, side_by_side
 from cellcolor.questions.tradeoff import few_that_cover
 from cellcolor.solvers import checked
 from cellcolor.solvers.bounds.cover import color_regions
@@ -66,52 +66,6 @@ class Choice:
     proved: bool = False
 
 
-@dataclass(frozen=True, eq=False)
-class _Region:
-    """A color region of a set-up: one color, connected over mesh edges that are not cracks."""
-
-    set_up: int
-    color: int
-    vertices: frozenset[int]
-
-
-def side_by_side(
-    surfaces: Sequence[LabelledSurface], regions: Collection[_Region]
-) -> LabelledSurface:
-    """One surface with the colors of some regions; before a color's name is its set-up's number.
-
-    Args:
-        surfaces: of all set-ups, on one mesh.
-        regions: those that may be painted.
-    """
-    first = surfaces[0]
-    names: list[str] = []
-    colors: list[list[int]] = [[] for _ in first.vertices]
-    cracks: dict[tuple[int, int], list[int]] = {}
-    given_up: set[int] = set()
-    inside: dict[tuple[int, int], set[int]] = {}
-    for region in regions:
-        inside.setdefault((region.set_up, region.color), set()).update(region.vertices)
-    for number, (set_up, color) in enumerate(sorted(inside)):
-        own, vertices = surfaces[set_up], inside[set_up, color]
-        names.append(f"{set_up + 1}: {own.colors[color]}")
-        for vertex in vertices:
-            colors[vertex].append(number)
-        for crack in own.cracks:
-            if color in crack.colors and {crack.i, crack.j} <= vertices:
-                cracks.setdefault((crack.i, crack.j), []).append(number)
-        given_up |= set(own.given_up)
-    return LabelledSurface(
-        first.name,
-        tuple(names),
-        first.vertices,
-        first.faces,
-        tuple(map(tuple, colors)),
-        tuple(Crack(i, j, tuple(own)) for (i, j), own in cracks.items()),
-        given_up=tuple(vertex for vertex in sorted(given_up) if not colors[vertex]),
-    )
-
-
 def choose(
     surfaces: Sequence[LabelledSurface],
     cover: float,
@@ -129,11 +83,9 @@ def choose(
         options: deadline, workers and seed; the search space is ``paper``.
 
     Raises:
-        InputError: nothing is reached, or the price is out of its range.
+        InputError: nothing is reached.
         OutOfTime: the deadline came before there was any choice.
     """
-    if change_over is not None:
-        check_change_over(change_over)
     in_turn = change_over is None  # set-ups first, then segments
     # What a change-over costs beyond the lift-off that it takes; one is counted before the first.
     extra = 0 if change_over is None else round(_UNIT * (change_over - 1))
@@ -196,7 +148,7 @@ class _Asked:
     def __init__(self, surfaces: Sequence[LabelledSurface], cover: float, options: Options) -> None:
         self.surfaces, self.options = surfaces, options
         self.areas = surfaces[0].vertex_areas
-        self.regions: list[_Region] = []
+        self.regions: list[Region] = []
         for number, surface in enumerate(surfaces):
             self.regions += _regions_of(number, surface, options.deadline)
         self._reach = np.array([one.colored for one in surfaces])
@@ -398,7 +350,7 @@ class _Master:
         self._model.add(self._segments >= least).only_enforce_if(nothing_else)
 
 
-def _within(surfaces: Sequence[LabelledSurface], one: _Region, other: _Region) -> bool:
+def _within(surfaces: Sequence[LabelledSurface], one: Region, other: Region) -> bool:
     """Whether a region has all vertices and edges of another one."""
     if one is other:
         return True
@@ -422,13 +374,13 @@ def _hardest(places: Iterable[tuple[int, ...]]) -> list[tuple[int, ...]]:
     return [place for _, place in kept]
 
 
-def _regions_of(number: int, surface: LabelledSurface, deadline: Deadline) -> list[_Region]:
+def _regions_of(number: int, surface: LabelledSurface, deadline: Deadline) -> list[Region]:
     """The color regions of a set-up."""
     found = decomposition_of(surface, deadline=deadline)
     cells: dict[int, list[int]] = {}
     for vertex, cell in enumerate(found.vertex_cell):
         cells.setdefault(cell, []).append(vertex)
     return [
-        _Region(number, color, frozenset(vertex for cell in own for vertex in cells[cell]))
+        Region(number, color, frozenset(vertex for cell in own for vertex in cells[cell]))
         for color, own in color_regions(found.instance)
     ]

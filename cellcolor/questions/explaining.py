@@ -199,23 +199,18 @@ class _Asked:
         covered = float(areas[surface.colored].sum())
         reached = ~np.isnan(built.configurations[:, :, 0]).all(axis=1)
         shares = covered / max(float(areas[reached].sum()), covered, 1e-12), covered / areas.sum()
-        found: tuple[int | None, int, bool, str] = None, 0, True, "nothing is reached"
+        row = RelaxedMinimum(*_in_words(what), None, 0, *shares, True, "nothing is reached")
         if not instance.nothing_to_cover:
+            row = replace(row, at_least=1, proved_for_surface=False, note="")
             try:
-                solution = checked.solve(instance, self._options)
-                found = (
-                    solution.segments,
-                    solution.surface_lower_bound,
-                    solution.proved_for_surface,
-                    "",
+                found = checked.solve(instance, self._options)
+                least, proved = found.surface_lower_bound, found.proved_for_surface
+                row = replace(
+                    row, segments=found.segments, at_least=least, proved_for_surface=proved
                 )
             except OutOfTime:
                 if not what:
                     raise
-                found = None, 1, False, ""
-        segments, at_least, proved, note = found
-        names, keys = _in_words(what)
-        row = RelaxedMinimum(names, keys, segments, at_least, *shares, proved, note)
         return _Known(built, row)
 
     def least_amount(self, one: Relaxation) -> RelaxedMinimum:

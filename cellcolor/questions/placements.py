@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 from math import floor, isfinite
 from typing import Any
 
+from cellcolor.data.value import named_members
 from cellcolor.data.wording import check_share, count, lift_offs_of
 from cellcolor.errors import InputError
 
@@ -31,15 +32,9 @@ def pose_in_words(pose: Pose, turned: str = " turned by", digits: str = ".4g") -
     return f"({where}) m" + (f"{turned} ({angles}) rad" if any(pose[3:]) else "")
 
 
-def pose_document(pose: Pose) -> dict[str, list[float]]:
+def pose_document(pose: Pose) -> dict[str, Any]:
     """The members of a JSON object that say where a part stands."""
     return {"position_m": list(pose[:3]), "rpy_rad": list(pose[3:])}
-
-
-def _most_common(reasons: Counter[str]) -> str:
-    """The commonest reasons, each with its number, as in "it would stand in the ground (5)"."""
-    listed = [f"{reason} ({number})" for reason, number in reasons.most_common(_FEW)]
-    return "; ".join(listed) + "; …" * (len(reasons) > _FEW)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,10 +128,6 @@ class Leeway:
         share = f"at least {100 * self.least_share:.1f} % of the area"
         return f"{text} ({count(self.tried, 'sample')}, {share})"
 
-    def to_document(self) -> dict[str, Any]:
-        """The JSON object."""
-        return asdict(self)
-
 
 @dataclass(frozen=True)
 class PlacedMinimum:
@@ -189,17 +180,10 @@ class PlacedMinimum:
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
-        leeway = {} if self.leeway is None else {"leeway": self.leeway.to_document()}
-        return {
-            **pose_document(self.pose),
-            "lift_offs": self.lift_offs,
-            "segments": self.segments,
-            "at_least_segments": self.at_least or self.segments,
-            "covered_share": self.covered_share,
-            "proved_for_surface": self.proved_for_surface,
-            "vertices": self.vertices,
-            "refused": self.refused,
-        } | leeway
+        least = {"at_least_segments": self.at_least or self.segments}
+        found = pose_document(self.pose) | named_members(self, "lift_offs", "segments") | least
+        found |= named_members(self, "covered_share", "proved_for_surface", "vertices", "refused")
+        return found | ({} if self.leeway is None else {"leeway": asdict(self.leeway)})
 
     def __str__(self) -> str:
         place, area = pose_in_words(self.pose), f"{100 * self.covered_share:.1f} % of the area"
@@ -258,8 +242,9 @@ class Placements:
         bounded = sum(row.at_least > 0 for row in self.tried)
         lines.append(f"  {tried} tried that had to cover {asked}, {bounded} left aside by bounds")
         if refused := Counter(row.refused for row in self.tried if row.refused):
-            why = _most_common(refused)
-            lines.append(f"  in {refused.total()} of them the part cannot stand: {why}")
+            why = "; ".join(f"{reason} ({number})" for reason, number in refused.most_common(_FEW))
+            more = "; …" * (len(refused) > _FEW)
+            lines.append(f"  in {refused.total()} of them the part cannot stand: {why}{more}")
         if not self.complete:
             lines.append("  the time limit came before everything was tried")
         return "\n".join(lines)

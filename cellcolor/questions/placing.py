@@ -55,8 +55,8 @@ def bounds_of(prepared: PreparedScene, cover: float, deadline: Deadline) -> tupl
         OutOfTime: the deadline came first.
     """
     verdicts = judged_at_vertices(prepared, StageClock(deadline, None))
-    areas = prepared.surface.vertex_areas()
-    valid, edges = verdicts.valid, prepared.surface.edges()
+    areas = prepared.surface.mesh.vertex_areas
+    valid, edges = verdicts.valid, prepared.surface.mesh.edges
     # Added up as a whole build adds: what is the same must not differ by rounding.
     most = float(areas[valid.any(axis=1)].sum() / areas.sum())
     if most < cover - SAME_SHARE or not most:
@@ -208,7 +208,7 @@ def coarse_scene(scene: Scene, vertices: int, deadline: Deadline) -> Scene:
         return scene.varied(object={"target_vertices": vertices}, collision_object=solid)
     angle = fold_angle(surface.mesh)
     own = len(folds(surface.vertices, surface.faces, angle))
-    area, wanted = float(surface.vertex_areas().sum()), vertices
+    area, wanted = float(surface.mesh.vertex_areas.sum()), vertices
     while wanted * _FINE_ENOUGH < len(surface.vertices):
         length = length_for(area, wanted)
         wanted = math.ceil(wanted * _FINE_ENOUGH)
@@ -277,7 +277,7 @@ def minima_at(
 def stands_in(prepared: PreparedScene) -> str | None:
     """What the part is in or touches: the ground or an obstacle; None if nothing."""
     vertices, ground = prepared.surface.vertices, prepared.ground
-    if ground is not None and (ground.along(vertices) < ground.offset_m).any():
+    if ground is not None and (ground.heights(vertices) < 0).any():
         return "the ground"
     for number, solid in enumerate(prepared.obstacles, 1):
         if meet(solid, prepared.target):

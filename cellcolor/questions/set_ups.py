@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from cellcolor.data.solution import Solution
-from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.surface import Crack, LabelledSurface
+from cellcolor.data.value import named_members
 from cellcolor.data.wording import count, lift_offs_of
 from cellcolor.questions.placements import Pose, pose_document, pose_in_words
 
@@ -39,14 +40,8 @@ class SetUp:
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
-        return {
-            "number": self.number,
-            "scene": self.scene,
-            **pose_document(self.pose),
-            "fixed_joints": dict(self.fixed_joints),
-            "segments": self.segments,
-            "covered_share": self.covered_share,
-        }
+        found = named_members(self, "number", "scene") | pose_document(self.pose)
+        return found | named_members(self, "fixed_joints", "segments", "covered_share")
 
     def __str__(self) -> str:
         place = pose_in_words(self.pose)
@@ -120,20 +115,11 @@ class SetUpPlan:
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
-        return {
-            "lift_offs": self.lift_offs,
-            "segments": self.segments,
-            "change_overs": self.change_overs,
-            "covered_share": self.covered_share,
-            "proved_for_surface": self.proved,
-            "fewest_set_ups": self.fewest_set_ups,
-            "at_least_segments": self.at_least_segments,
-            "setups": [one.to_document() for one in self.set_ups],
-            "alone": self.alone.to_document(),
-            "candidates": self.candidates,
-            "refused": list(self.refused),
-            "left": self.left,
-        }
+        shares = ("covered_share", "proved_for_surface", "fewest_set_ups", "at_least_segments")
+        found = named_members(self, "lift_offs", "segments", "change_overs", *shares)
+        found["setups"] = [one.to_document() for one in self.set_ups]
+        found["alone"] = self.alone.to_document()
+        return found | named_members(self, "candidates", "refused", "left")
 
     def __str__(self) -> str:
         proof = "proved" if self.proved else f"at least {count(self.at_least_segments, 'segment')}"
@@ -153,3 +139,49 @@ class SetUpPlan:
         if self.left:
             lines.append(f"  the time limit left {count(self.left, 'candidate')} unbuilt")
         return "\n".join(lines)
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """A color region of a set-up: one color, connected over mesh edges that are not cracks."""
+
+    set_up: int
+    color: int
+    vertices: frozenset[int]
+
+
+def side_by_side(
+    surfaces: Sequence[LabelledSurface], regions: Collection[Region]
+) -> LabelledSurface:
+    """One surface with the colors of some regions; before a color's name is its set-up's number.
+
+    Args:
+        surfaces: of all set-ups, on one mesh.
+        regions: those that may be painted.
+    """
+    first = surfaces[0]
+    names: list[str] = []
+    colors: list[list[int]] = [[] for _ in first.vertices]
+    cracks: dict[tuple[int, int], list[int]] = {}
+    given_up: set[int] = set()
+    inside: dict[tuple[int, int], set[int]] = {}
+    for region in regions:
+        inside.setdefault((region.set_up, region.color), set()).update(region.vertices)
+    for number, (set_up, color) in enumerate(sorted(inside)):
+        own, vertices = surfaces[set_up], inside[set_up, color]
+        names.append(f"{set_up + 1}: {own.colors[color]}")
+        for vertex in vertices:
+            colors[vertex].append(number)
+        for crack in own.cracks:
+            if color in crack.colors and {crack.i, crack.j} <= vertices:
+                cracks.setdefault((crack.i, crack.j), []).append(number)
+        given_up |= set(own.given_up)
+    return LabelledSurface(
+        first.name,
+        tuple(names),
+        first.vertices,
+        first.faces,
+        tuple(map(tuple, colors)),
+        tuple(Crack(i, j, tuple(own)) for (i, j), own in cracks.items()),
+        given_up=tuple(vertex for vertex in sorted(given_up) if not colors[vertex]),
+    )

@@ -18,6 +18,7 @@ import numpy as np
 from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Instance
+from cellcolor.data.shares import cell_weights
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.questions.answers import Front, FrontPoint
@@ -49,11 +50,11 @@ def front_of(
     Raises:
         OutOfTime: the deadline came before any division of the whole was known.
     """
-    own = _weights(instance)
+    own, _ = cell_weights(instance)
     whole, total = _integers(own), sum(own)
     report = progress or (lambda _: None)
     report("fewest segments")
-    solution = checked.solve(instance, replace(options, deadline=options.deadline.share(0.5)))
+    solution = _solved(instance, options)
     if solution.segments is None:
         if instance.nothing_to_cover:
             return Front(instance, (), total)
@@ -89,8 +90,8 @@ def few_that_cover(instance: Instance, share: float, options: Options) -> tuple[
     Raises:
         OutOfTime: the deadline came before any division of the whole was known.
     """
-    whole = _integers(_weights(instance))
-    solution = checked.solve(instance, replace(options, deadline=options.deadline.share(0.5)))
+    whole = _integers(cell_weights(instance)[0])
+    solution = _solved(instance, options)
     if solution.segments is None:
         raise OutOfTime
     regions, total = color_regions(instance), sum(whole)
@@ -107,7 +108,7 @@ def few_that_cover(instance: Instance, share: float, options: Options) -> tuple[
         if covered < share or not left_out:
             continue
         rest, _ = instance.without_cells(left_out)
-        part = checked.solve(rest, replace(options, deadline=options.deadline.share(0.5)))
+        part = _solved(rest, options)
         if part.segments is not None and part.segments < best.segments:
             best = FrontPoint(part.segments, covered, 1.0, left_out, part, False)
     return best, solution.surface_lower_bound if least is None else least
@@ -168,8 +169,7 @@ class _Asked:
         if not left_out:  # the whole needs more
             return None
         rest, _ = self._instance.without_cells(left_out)
-        deadline = self._options.deadline.share(0.5)
-        solution = checked.solve(rest, replace(self._options, deadline=deadline))
+        solution = _solved(rest, self._options)
         if solution.segments is None or solution.segments > segments:
             return None
         return sum(self._weights[cell] for cell in cells), left_out, solution
@@ -228,11 +228,9 @@ def _most_covered(
     return found, max(weight, int(solver.best_objective_bound + 0.5))
 
 
-def _weights(instance: Instance) -> list[float]:
-    """The area of each cell, or 1 for each where an area is not known."""
-    areas = [cell.area for cell in instance.cells]
-    known = [area for area in areas if area is not None]
-    return known if len(known) == len(areas) and sum(known) > 0 else [1.0] * len(areas)
+def _solved(instance: Instance, options: Options) -> Solution:
+    """A solution in half of the time that is left."""
+    return checked.solve(instance, replace(options, deadline=options.deadline.share(0.5)))
 
 
 def _integers(weights: Sequence[float]) -> list[int]:

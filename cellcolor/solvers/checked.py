@@ -12,13 +12,7 @@ from cellcolor.checker.division import Report, check_scheme, check_solution
 from cellcolor.checker.groups import regions_of_cells
 from cellcolor.data.bounds import Bound, CertifiedCells, greatest, kind_of
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import (
-    Division,
-    InstanceReference,
-    Solution,
-    Status,
-    count_segments,
-)
+from cellcolor.data.solution import Division, InstanceReference, Solution, Status, count_segments
 from cellcolor.data.wording import count, lift_offs_of
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, RefusedResult
@@ -58,8 +52,7 @@ def check_able_to_list(name: str, instance: Instance) -> None:
     """Reject an instance whose optimal schemes a solver does not list.
 
     Raises:
-        InputError: there is no such solver, or a cell has several live loops and that is more
-            than it is able to do.
+        InputError: there is no such solver, or a cell has too many live loops for it.
     """
     if make_solver(name).abilities.schemes_of_several_loops:
         return
@@ -70,10 +63,7 @@ def check_able_to_list(name: str, instance: Instance) -> None:
 
 
 def solve(
-    instance: Instance,
-    options: Options,
-    solver: str = DEFAULT,
-    progress: OnProgress | None = None,
+    instance: Instance, options: Options, solver: str = DEFAULT, progress: OnProgress | None = None
 ) -> Solution:
     """Color an instance with the fewest segments; the checker sees it.
 
@@ -213,11 +203,9 @@ def _needed(bounds: tuple[Bound, ...]) -> tuple[Bound, ...]:
     Those for any division of the surface come first, each kind of bound in the order given.
     """
     kept: list[Bound] = []
-    for extent in ("surface", "strands"):
-        for bound in bounds:
-            least = max((b.value for b in kept), default=0)
-            if bound.holds_for == extent and bound.value > least:
-                kept.append(bound)
+    for bound in sorted(bounds, key=lambda bound: bound.holds_for != "surface"):
+        if bound.value > max((b.value for b in kept), default=0):
+            kept.append(bound)
     return tuple(kept)
 
 

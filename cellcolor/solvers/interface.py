@@ -16,9 +16,8 @@ from cellcolor.errors import InputError
 from cellcolor.files.validation import settle
 
 PORTFOLIO = 8
-"""CP-SAT's workers unless asked for otherwise. Each worker searches in a way of its own, so that
-more workers than cores are of use. One or two take turns in a few of these ways
-(``interruptible``)."""
+"""CP-SAT's workers unless asked for otherwise. Each searches in a way of its own, so that more
+workers than cores are of use. One or two take turns in a few of these ways (``interruptible``)."""
 
 STRANDS: dict[SearchSpace, int] = {"paper": 1, "surface": 2}
 """Strands per topological edge unless asked for otherwise. A strand is one of the parallel
@@ -30,12 +29,7 @@ OnProgress = Callable[[int | None, int], None]
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """A legal division to start from.
-
-    Attributes:
-        division: the sub-cells of every cell, in the form of ``Solution.cells``.
-        seams: the seams that its darts refer to.
-    """
+    """A legal division to start from, in the form of ``Solution.cells``, and its seams."""
 
     division: Division
     seams: tuple[Seam, ...]
@@ -80,7 +74,7 @@ class Answer:
 
     Attributes:
         division: the best division found, None when none was found.
-        seams: the seams that its darts refer to.
+        seams: those that its darts refer to.
         bounds: what was proved about the fewest segments, and how.
         notes: what was left out and why, a sentence each, such as a model too large to be built.
         model: how large the complete model of the problem is, if one was built and solved.
@@ -107,7 +101,6 @@ class Abilities:
     seams as edges (:mod:`cellcolor.solvers.seamed`).
 
     Attributes:
-        search_spaces: those that it can search.
         several_loops: it divides cells with several live loops as well.
         optimal_schemes: it lists all optimal schemes, so it is a :class:`SchemeSolver`.
         schemes_of_several_loops: it does so even where cells have several live loops.

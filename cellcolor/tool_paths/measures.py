@@ -8,7 +8,6 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, numbered
-from cellcolor.mesh.triangle_mesh import grouped
 from cellcolor.tool_paths.rounding import Line
 from cellcolor.tool_paths.triangles import Triangles
 
@@ -78,11 +77,8 @@ def measure(line: Line, segment: int, spacing: float) -> tuple[PathMeasures, lis
         float(visits_of(line, spacing).mean()),
         float(mesh.lengths[mesh.triangles_at == 1].sum()),
     )
-    far = distances > 0.75 * spacing
-    place = grouped(len(far), mesh.edges[far[mesh.edges].all(axis=1)])
     left = []
-    for number in np.unique(place[far]):
-        members = np.flatnonzero(far & (place == number))
+    for members in mesh.places(distances > 0.75 * spacing):
         farthest = members[distances[members].argmax()]
         left.append(
             Uncovered(

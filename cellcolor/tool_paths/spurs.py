@@ -6,7 +6,6 @@ import numpy as np
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline
-from cellcolor.mesh.triangle_mesh import grouped
 from cellcolor.tool_paths.registry import Laid
 from cellcolor.tool_paths.triangles import Triangles, off_border, ways_from, with_room_inside
 
@@ -60,14 +59,8 @@ def _lengths_along(mesh: Triangles, way: list[int]) -> Array:
 
 def _targets(mesh: Triangles, distances: Array, spacing: float) -> list[tuple[int, float]]:
     """The farthest vertex of every place that has to be reached, and how far it is."""
-    far = distances > _FAR * spacing
-    if not far.any():
-        return []
-    place = grouped(len(far), mesh.edges[far[mesh.edges].all(axis=1)])
     found = []
-    vertices = np.flatnonzero(far)
-    for number in np.unique(place[vertices]):
-        members = vertices[place[vertices] == number]
+    for members in mesh.places(distances > _FAR * spacing):
         farthest = int(members[distances[members].argmax()])
         area = float(mesh.vertex_areas[members].sum())
         if area > _SMALL * spacing**2 or distances[farthest] > _VERY_FAR * spacing:

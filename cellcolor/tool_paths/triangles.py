@@ -18,7 +18,7 @@ from scipy.sparse.linalg import cg
 
 from cellcolor.arrays import Array, Index, Mask, unit
 from cellcolor.mesh.dividing import cut, new_points
-from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +70,12 @@ class Triangles(TriangleMesh):
         return csr_matrix(
             (np.concatenate([values, values]), (ends.T.ravel(), ends[:, ::-1].T.ravel())), (n, n)
         )
+
+    def places(self, of: Mask) -> list[Index]:
+        """Vertices (n,) of which something holds: those of each connected place."""
+        place = grouped(len(of), self.edges[of[self.edges].all(axis=1)])
+        vertices = np.flatnonzero(of)
+        return [vertices[place[vertices] == number] for number in np.unique(place[vertices])]
 
     def refined(self, longest: float) -> Triangles:
         """Halve edges until none is longer, m; triangles stay conforming."""

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 from scipy.spatial import cKDTree
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, stretches
 from cellcolor.data.trajectory_verdict import CoveredArea
 from cellcolor.deadline import Deadline
 from cellcolor.errors import TooLarge
@@ -18,7 +18,7 @@ from cellcolor.frontend.setup import Motion
 from cellcolor.memory import batches, check_memory
 from cellcolor.trajectory_checker.contact import Contact
 from cellcolor.trajectory_checker.covered import FAR, NEAR, Reached, covered_by, failing_places
-from cellcolor.trajectory_checker.fault_list import FaultList, stretches
+from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.fine_mesh import FineMesh
 from cellcolor.trajectory_checker.stated import judge_left_out
 from cellcolor.trajectory_checker.tolerances import Limits

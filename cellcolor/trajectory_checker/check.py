@@ -59,11 +59,8 @@ def check_trajectory(
         TooLarge: surface or trajectory would not fit into memory.
     """
     report, prepared = progress or (lambda _: None), built.prepared
-    robot, motion, direction = (
-        prepared.robot,
-        prepared.scene.setup.motion,
-        prepared.robot.task.direction,
-    )
+    robot, motion = prepared.robot, prepared.scene.setup.motion
+    direction = robot.task.direction
     _check_mesh(built)
     _check_arm(prepared, trajectory)
     faults = FaultList(trajectory, timed)

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, stretches
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import FaultKind
 from cellcolor.deadline import Deadline
@@ -17,7 +17,7 @@ from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Turn
 from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.dense import Dense, across_of, angles, joint_steps, turns_off
-from cellcolor.trajectory_checker.fault_list import FaultList, stretches
+from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
 from cellcolor.trajectory_checker.tolerances import BRANCH, LEAVING, OFF_SURFACE, TILT, TURN
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, stretches
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import Fault, FaultKind
 from cellcolor.trajectory_checker.dense import Dense
@@ -119,10 +119,3 @@ class FaultList:
                 return f"{self.trajectory.joint_names[joint]} {text(row, joint)}"
 
             self.add_stretches(kind, at_fault[:, joint], excess[:, joint], said, places, joint)
-
-
-def stretches(of: Mask) -> list[tuple[int, int]]:
-    """First row of each stretch of neighbors that are true, and the one after its last."""
-    steps = np.diff(np.concatenate([[0], of.astype(np.int8), [0]]))
-    begins, ends = np.flatnonzero(steps > 0).tolist(), np.flatnonzero(steps < 0).tolist()
-    return list(zip(begins, ends, strict=True))

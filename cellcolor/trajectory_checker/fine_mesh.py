@@ -79,8 +79,7 @@ class FineMesh:
     @cached_property
     def owner(self) -> Index:
         """(m,) the vertex of the given surface in whose barycentric part its centroid is."""
-        owner: Index = self._owners(self.face, self._centroids)
-        return owner
+        return self._owners(self.face, self._centroids)
 
     @cached_property
     def near(self) -> csr_array:
@@ -100,13 +99,11 @@ class FineMesh:
     @cached_property
     def _corners(self) -> Array:
         """(m, 3, 3) where the corners of the small triangles are, m."""
-        corners: Array = self.vertices[self.triangles]
-        return corners
+        return np.asarray(self.vertices[self.triangles])
 
     @cached_property
     def _centroids(self) -> Array:
-        centroids: Array = self._corners.mean(axis=1)
-        return centroids
+        return np.asarray(self._corners.mean(axis=1))
 
     @cached_property
     def _tree(self) -> cKDTree:
@@ -121,8 +118,7 @@ class FineMesh:
     @cached_property
     def _facing(self) -> Array:
         """(m, 3) unit normals of the small triangles; zero of those without any area."""
-        facing: Array = _unit(trimesh.triangles.cross(self._corners))
-        return facing
+        return _unit(trimesh.triangles.cross(self._corners))
 
     def locate(self, points: Array, outward: Array, deadline: Deadline = NEVER) -> Located:
         """The nearest points of the surface.

@@ -8,9 +8,9 @@ from operator import le
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, stretches
 from cellcolor.data.trajectory import Trajectory
-from cellcolor.trajectory_checker.fault_list import FaultList, stretches
+from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import (
     ANGLE_ROUNDING,
     BOW,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.arrays import Array, Mask
+from cellcolor.arrays import Array, Mask, stretches
 from cellcolor.data.trajectory import ExtraLiftOff, RepeatedStretch, Trajectory, TrajectoryTable
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
@@ -15,7 +15,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.trajectory_checker.covered import Reached
 from cellcolor.trajectory_checker.dense import angles, poses_of, strokes_of
-from cellcolor.trajectory_checker.fault_list import FaultList, stretches
+from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import POSE_ANGLE, POSE_DISTANCE
 
 _AREA_SHARE = 1.25  # of the stated area; the planner measures on another mesh than the judge

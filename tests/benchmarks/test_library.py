@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import math
 import runpy
 import shutil
 import subprocess
@@ -18,21 +17,17 @@ from typing import Any
 import pytest
 from library import INSTANCES
 
-from cellcolor.checker.division import check_solution
 from cellcolor.data.bounds import Bound, Extent
-from cellcolor.data.library_index import KnownRange, LibraryEntry, LibraryIndex, UpperBound
+from cellcolor.data.library_index import LibraryEntry, LibraryIndex
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.lab import families
-from cellcolor.solvers.checked import solve
-from cellcolor.solvers.interface import STRANDS, Options
 
 sys.path.append(str(INSTANCES.parent / "benchmarks"))
 import library_archive
-from library_entries import INDEX, SOLUTIONS, Origin, entry_of, graph_of, problems
+from library_entries import INDEX, SOLUTIONS, problems
 
 LIBRARY = LibraryIndex.read(INSTANCES / INDEX)
 
@@ -61,24 +56,6 @@ def test_random_graphs_are_made_again(name: str) -> None:
     made = eval(recipe, vars(families))
     graph = decompose(made) if isinstance(made, LabelledSurface) else made
     assert graph.sha256 == entry.fingerprint
-
-
-OPEN = [entry.name for entry in LIBRARY.entries if entry.is_open and entry.file is not None]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", OPEN)
-def test_ten_seconds_do_not_beat_the_index(name: str) -> None:
-    """Else it is stale: run  python benchmarks/library.py"""
-    entry = LIBRARY[name]
-    graph = graph_of(INSTANCES / (entry.file or ""))
-    for space in ("paper", "surface"):
-        if not entry.range_in(space).proved:
-            solution = solve(graph, Options(space, STRANDS[space], deadline=Deadline.after(10)))
-            assert check_solution(graph, solution).valid
-            known = entry.range_in(space)
-            assert solution.lower_bound <= known.lower.value
-            assert known.upper is None or (solution.segments or math.inf) >= known.upper.value
 
 
 def test_no_bound_is_lost_when_a_graph_is_solved_again() -> None:
@@ -147,10 +124,6 @@ def edit(path: Path, old: str, new: str) -> None:
     path.write_text(text.replace(old, new, 1), encoding="utf-8")
 
 
-def _another_graph(copy: Path) -> None:
-    shutil.copy(copy / "paper/parallel-corridors.json", copy / "paper/ring.json")
-
-
 def _of_no_entry(copy: Path) -> None:
     shutil.copy(INSTANCES / "paper/annulus.json", copy / "paper")
     shutil.copy(INSTANCES / SOLUTIONS / "annulus.solution.json", copy / SOLUTIONS)
@@ -161,17 +134,6 @@ STALE: dict[str, tuple[Callable[[Path], object], list[str]]] = {
     "a changed byte": (
         lambda copy: edit(copy / "paper/ring.json", "blue", "blub"),
         ["paper/ring.json: sha256 is not that of the index"],
-    ),
-    "another graph": (
-        _another_graph,
-        [
-            "paper/ring.json: sha256 is not that of the index",
-            "solutions/ring.solution.json: is not valid",
-        ],
-    ),
-    "a broken file": (
-        lambda copy: (copy / "paper/ring.json").write_text("{", encoding="utf-8"),
-        ["paper/ring.json: "],
     ),
     "a missing file": (
         lambda copy: (copy / "paper/ring.json").unlink(),
@@ -199,12 +161,6 @@ STALE: dict[str, tuple[Callable[[Path], object], list[str]]] = {
         ),
         ["solutions/ring.solution.json: is not valid"],
     ),
-    "another search space": (
-        lambda copy: (copy / SOLUTIONS / "ring.solution.json").rename(
-            copy / SOLUTIONS / "ring.surface.solution.json"
-        ),
-        ["solutions/ring.surface.solution.json: search_space: must"],
-    ),
 }
 
 
@@ -224,43 +180,6 @@ def test_a_wrong_count_is_found(copy: Path, member: str) -> None:
     wrong = replace(ring, **{member: getattr(ring, member) + 1})
     write(copy, LIBRARY["parallel-corridors"], wrong)
     assert problems(copy) == [f"paper/ring.json: {member} is not that of the index"]
-
-
-def test_bounds_that_no_solution_shows_are_found(copy: Path) -> None:
-    """A better division than the stored one, a greater bound, one that is said to be verified."""
-    ring = LIBRARY["ring"]
-    assert ring.paper.upper is not None
-    lower, upper = ring.paper.lower, ring.paper.upper
-    one = KnownRange(replace(lower, value=1), replace(upper, value=1))
-    three = KnownRange(replace(lower, value=3), replace(upper, value=3))
-    trusted = KnownRange(replace(lower, verified=False), upper)
-    nothing = KnownRange(lower, None)
-    for said in (one, three, trusted):
-        write(copy, LIBRARY["parallel-corridors"], replace(ring, paper=said, surface=said))
-        found = problems(copy)
-        assert found and all(line.startswith("paper/ring.json: ") for line in found)
-        assert "paper.lower is" in found[0] or "paper.upper is" in found[0]
-    write(copy, LIBRARY["parallel-corridors"], replace(ring, paper=nothing))
-    assert "paper/ring.json: paper.upper is None" in problems(copy)[0]
-
-
-def test_bounds_that_stay_keep_their_dates(copy: Path) -> None:
-    path = copy / "paper/ring.json"
-    origin = Origin("family", "somewhere", "MIT")
-    before = LIBRARY["ring"]
-
-    def made(before: LibraryEntry | None) -> LibraryEntry:
-        return entry_of(copy, path, origin, before, lambda solver: f"{solver} 9", "2030-01-02")
-
-    new, kept = made(None), made(before)
-    assert kept.paper == before.paper and kept.surface == before.surface
-    assert (new.paper.lower.version, new.paper.lower.date) == ("cp-sat 9", "2030-01-02")
-    assert isinstance(before.paper.upper, UpperBound)
-    worse = replace(before.paper, upper=replace(before.paper.upper, value=5))
-    better = made(replace(before, paper=worse)).paper
-    assert better.lower == before.paper.lower
-    assert better.upper is not None and better.upper.date == "2030-01-02"
-    assert graph_of(path).sha256 == kept.fingerprint == before.fingerprint
 
 
 class TestReading:

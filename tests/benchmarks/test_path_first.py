@@ -34,6 +34,7 @@ def test_no_choice_of_branches_changes_less_often(valid: list[list[bool]]) -> No
     assert len(fewest_lift_offs(np.array(valid))) == min(changes)
 
 
+@pytest.mark.second
 def test_the_square_needs_no_change() -> None:
     path, reached, changes = counted(build_surface(shipped("square", 200)), 0.5)
     assert len(path.points) == len(reached) and reached.mean() > 0.95 and not len(changes)
@@ -95,22 +96,3 @@ def test_a_closed_surface(angle: float) -> None:
         assert np.linalg.norm(on_each - place, axis=1).min() < 1e-9
     assert np.einsum("ij,ij->i", path.normals, path.points / 0.1).min() > 0.98
     assert np.allclose(np.linalg.norm(path.normals, axis=1), 1.0)
-
-
-@pytest.mark.parametrize("angle", ANGLES)
-def test_what_is_out_of_reach_is_gone_round(angle: float) -> None:
-    path = path_over(square(), angle, lambda at: np.linalg.norm(at, axis=1) > 0.1)
-    assert path.starts.tolist() == [0]
-    # Triangles with a vertex in the disc are left out, so steps keep off it but for their chords.
-    assert np.linalg.norm(steps(path), axis=1).min() > 0.1 * np.cos(0.15)
-
-
-def test_a_surface_in_two_parts() -> None:
-    """Along the gap one part comes after the other; across it every pass is parted."""
-    paths = [
-        path_over(square(), angle, lambda at: np.abs(at[:, 0]) > 0.05) for angle in (0.0, np.pi / 2)
-    ]
-    numbers = sorted(len(path.starts) for path in paths)
-    assert numbers[0] == 2 and numbers[1] > 10
-    for path in paths:
-        assert np.abs(steps(path)[:, 0]).min() > 0.05

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import pytest
-
 from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import Crack, LabelledSurface
@@ -28,20 +26,6 @@ def surface() -> LabelledSurface:
             "vertex_colors": [[0], [0], [0], [0], [0, 1], [0, 1], [0, 1], []],
         }
     )
-
-
-@pytest.mark.parametrize(
-    ("colors", "expected"),
-    [
-        ((0, 0, 0, 0, 1, 1, 1), "vertex_colors: 7 entries for 8 vertices"),
-        ((0, 0, 0, 0, 1, 1, None, None), "vertex_colors[6]: null, but colors [0, 1]"),
-        ((0, 0, 0, 0, 1, 1, 1, 1), "vertex_colors[7]: color 1 does not reach"),
-        ((0, 1, 0, 0, 1, 1, 1, None), "vertex_colors[1]: color 1 does not reach"),
-    ],
-)
-def test_plans_are_checked(colors: tuple[int | None, ...], expected: str) -> None:
-    report = check_plan(surface(), Plan(colors))
-    assert report.problems[0].startswith(expected) and report.segments is None
 
 
 def test_segments_of_a_plan_are_counted_on_the_mesh() -> None:

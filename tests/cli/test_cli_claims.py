@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,16 +10,13 @@ from commands import json_lines, run
 from library import PAPER
 from pages import small_wok
 
-from cellcolor.checker.claimed_numbers import contradictions
-from cellcolor.data.instance import Instance, KnownResult, KnownResults
-from cellcolor.solvers.checked import solve
-from cellcolor.solvers.interface import Options
-
 Capture = pytest.CaptureFixture[str]
 
 RING = PAPER / "ring.json"
 SPLIT = PAPER / "split-cell.json"
 ZEROS = PAPER / "crossing-zeros.json"
+SURFACE = ["--search-space", "surface"]
+FEW = ["--all", "--limit", "2"]
 CORRIDORS = PAPER / "parallel-corridors.json"
 
 
@@ -141,24 +137,9 @@ class TestKnown:
             (SPLIT, {"paper": {"segments": 1}}, [], "the lower bound found is 2"),
             (SPLIT, {"surface": {"segments": 3}}, [], "the division found has 2"),
             (SPLIT, {"surface": {"segments": 1}}, [], "the lower bound found is 2"),
-            (
-                SPLIT,
-                {"paper": {"segments": 1}},
-                ["--search-space", "surface"],
-                "the lower bound found is 2",
-            ),
-            (
-                ZEROS,
-                {"paper": {"segments": 2, "schemes": 4}},
-                ["--all"],
-                "4 are said to be all, 3 are found",
-            ),
-            (
-                ZEROS,
-                {"paper": {"segments": 2, "schemes": 1}},
-                ["--all", "--limit", "2"],
-                "1 are said to be all, 2 are found",
-            ),
+            (SPLIT, {"paper": {"segments": 1}}, SURFACE, "the lower bound found is 2"),
+            (ZEROS, {"paper": {"segments": 2, "schemes": 4}}, ["--all"], "4 are said to be all, 3"),
+            (ZEROS, {"paper": {"segments": 2, "schemes": 1}}, FEW, "1 are said to be all, 2 are"),
         ],
     )
     def test_a_contradiction_is_an_error(
@@ -184,20 +165,3 @@ class TestKnown:
         first, second = json_lines(capsys.readouterr().out)
         assert first["segments"] == 2 and "error" not in second
         assert first["error"].startswith("known.")
-
-    @pytest.mark.parametrize(
-        ("known", "options"),
-        [
-            # A surface may need fewer than the paper's divisions, and strands may need more.
-            (KnownResults(KnownResult(3), KnownResult(2)), Options("paper")),
-            (KnownResults(KnownResult(3), KnownResult(2)), Options("surface", strands=2)),
-            (KnownResults(KnownResult(3), KnownResult(2)), Options("surface", strands=1)),
-            (KnownResults(KnownResult(3)), Options("surface", strands=2)),
-            (None, Options()),
-        ],
-    )
-    def test_what_is_right_contradicts_nothing(
-        self, known: KnownResults | None, options: Options
-    ) -> None:
-        instance = replace(Instance.read(CORRIDORS), known=known)
-        assert contradictions(instance, solve(instance, options)) == []

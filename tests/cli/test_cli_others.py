@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from commands import json_lines, run
 from documents import SURFACE
-from library import INSTANCES, PAPER
+from library import PAPER
 
 import cellcolor.cli.checking
 from cellcolor.data.instance import Instance
@@ -45,30 +45,6 @@ class TestBuild:
         assert run("build", RING, "-o", tmp_path / "x.json") == 2
         assert "is an instance already" in capsys.readouterr().err
         assert list(tmp_path.iterdir()) == []
-
-    def test_scene(self, tmp_path: Path, capsys: Capture) -> None:
-        text = (INSTANCES / "scenes" / "wok.toml").read_text(encoding="utf-8")
-        models = (INSTANCES.parent / "models").as_posix()
-        scene = tmp_path / "small.toml"
-        text = text.replace("target_vertices = 1000", "target_vertices = 120")
-        scene.write_text(text.replace("../../models", models), encoding="utf-8")
-        out = tmp_path / "small.json"
-        assert run("build", scene, "-o", out) == 0
-        assert "reachable" in capsys.readouterr().out
-        instance = Instance.read(out)
-        assert instance.surface is not None
-        assert instance.surface.path == "small.surface.json"
-        surface = LabelledSurface.read(tmp_path / "small.surface.json")
-        assert len(surface.vertices) == len(instance.surface.vertex_cell)
-        assert decompose(surface, "small.surface.json") == instance
-        side = tmp_path / "small.reasons.npz"
-        assert sorted(tmp_path.iterdir()) == sorted(
-            [scene, out, side, tmp_path / "small.surface.json"]
-        )
-        assert surface.meta["side_file"] == side.name
-        assert run("solve", scene, out, "--json") == 0
-        lines = json_lines(capsys.readouterr().out)
-        assert lines[0]["segments"] == lines[1]["segments"]
 
 
 class TestCheck:

@@ -72,16 +72,6 @@ def test_wrong_input_is_refused(
     assert not output.exists()
 
 
-def test_out_of_time_nothing_is_written(
-    painted: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    output = tmp_path / "paths.json"
-    capsys.readouterr()
-    assert run("cover", *painted, *LENGTHS, "-o", output, "--time-limit", 1e-6) == 3
-    assert "not covered" in capsys.readouterr().err
-    assert not output.exists()
-
-
 def test_python_refuses_what_does_not_fit() -> None:
     painting = cellcolor.paint("ring.surface.json", cellcolor.solve("ring.surface.json"))
     lengths = {"spacing_m": 0.5, "tool_radius_m": 0.5}

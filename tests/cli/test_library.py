@@ -61,14 +61,6 @@ def test_import_corrected(tmp_path: Path, capsys: Capture) -> None:
     assert meta == {"made_by": "cellcolor import graph.txt --correct 2=1,-1"}
 
 
-def test_import_overwrites_nothing(tmp_path: Path, capsys: Capture) -> None:
-    source = tmp_path / "graph.txt"
-    source.write_text(GRAPH, encoding="utf-8")
-    assert run("import", source, "-o", source) == 2
-    assert "is an input" in capsys.readouterr().err
-    assert source.read_text(encoding="utf-8") == GRAPH
-
-
 def test_a_graph_that_is_in_the_library_is_recognised(
     tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import random
 from pathlib import Path
 
@@ -56,27 +55,6 @@ def test_wrong_files_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[s
         assert len(lines) == 1 and complaint in lines[0], lines
     assert ring.read_bytes() == before
     assert {path.name for path in tmp_path.iterdir()} == {"solution.json"}
-
-
-def test_a_foreign_plan_beside_it_is_not_overwritten(
-    tmp_path: Path,
-) -> None:
-    solution, foreign = tmp_path / "solution.json", tmp_path / "x.plan.json"
-    ring = PAPER / "ring.surface.json"
-    assert run("solve", ring, "-o", solution) == 0
-    foreign.write_text(json.dumps({"format": "somebody/else"}))
-    assert run("paint", ring, solution, "-o", tmp_path / "x.surface.json") == 2
-    assert json.loads(foreign.read_text()) == {"format": "somebody/else"}
-    assert not (tmp_path / "x.surface.json").exists()
-
-
-def test_in_python() -> None:
-    result = cellcolor.solve("parallel-corridors.surface.json", search_space="surface")
-    painting = cellcolor.paint("parallel-corridors.surface.json", result)
-    # Two corridors side by side through both middle cells (docs/semantics.md, section 4).
-    assert painting.segments == 2
-    assert cellcolor.judge(painting.surface, painting.plan).optimal
-    assert "2 segments, 1 lift-off" in str(painting)
 
 
 def test_the_surface_that_an_instance_names_is_not_overwritten(

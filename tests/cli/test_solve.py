@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 from commands import json_lines, run
-from documents import INSTANCE
 from library import INSTANCES, PAPER
 
 from cellcolor.data.cells_and_edges import Cell
@@ -154,17 +152,6 @@ class TestSolve:
         (written,) = tmp_path.iterdir()
         assert Solution.read(written).status == "feasible"
         assert run("check", instance, written) == 0
-
-    def test_empty_instance(self, tmp_path: Path, capsys: Capture) -> None:
-        empty = INSTANCE | {"cells": [], "edges": [], "known": {}}
-        empty.pop("surface")
-        path = tmp_path / "empty.json"
-        path.write_text(json.dumps(empty), encoding="utf-8")
-        for solver in ("cp-sat", "dfs"):
-            assert run("solve", path, "--json", "--solver", solver) == 0
-            (line,) = json_lines(capsys.readouterr().out)
-            assert (line["segments"], line["lift_offs"], line["cells"]) == (0, 0, [])
-        assert run("solve", path) == 0
 
     def test_progress_only_for_people(
         self, capsys: Capture, monkeypatch: pytest.MonkeyPatch

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import signal
 from collections.abc import Iterator
 from contextlib import nullcontext
@@ -151,31 +150,6 @@ class TestAllSchemes:
         (line,) = json_lines(capsys.readouterr().out)
         assert (line["schemes"], line["complete"]) == (0, False)
         assert list(read_schemes(out)) == []
-
-    def test_cell_with_several_live_loops(self, tmp_path: Path, capsys: Capture) -> None:
-        out = tmp_path / "x.jsonl"
-        """The depth-first search lists no schemes of such cells."""
-        command = ("solve", PAPER / "annulus.json", "--all", "--solver", "dfs", "-o", out)
-        assert run(*command) == 2
-        (line,) = capsys.readouterr().err.splitlines()
-        assert "annulus.json: cells[1].loops: " in line
-        assert not out.exists()
-
-    def test_several_loops_of_which_one_is_live(self, tmp_path: Path, capsys: Capture) -> None:
-        """Rule 5 speaks of live darts only: an unreachable hole does not count."""
-        hole = {
-            "format": "cellcolor/instance",
-            "version": 1,
-            "name": "hole",
-            "colors": ["red"],
-            "cells": [{"id": 0, "colors": [0], "loops": [[1], [2]]}],
-            "edges": [{"id": 1, "left": 0, "right": -1}, {"id": 2, "left": 0, "right": -1}],
-        }
-        path = tmp_path / "hole.json"
-        path.write_text(json.dumps(hole), encoding="utf-8")
-        assert run("solve", path, "--all", "--json") == 0
-        (line,) = json_lines(capsys.readouterr().out)
-        assert (line["segments"], line["schemes"], line["complete"]) == (1, 1, True)
 
 
 def test_a_few_of_very_many(tmp_path: Path, capsys: Capture) -> None:

@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from library import INSTANCES
 from shipped import SCENES
 from vertex_minima import vertex_minimum
 
 import cellcolor
 from cellcolor.arrays import Array, Index
 from cellcolor.configurations.labelling import from_configurations
-from cellcolor.configurations.matching import Nearest
 from cellcolor.data.candidate_table import CandidateTable
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
 from examples import examples
 
@@ -69,29 +65,6 @@ def test_a_scene_without_its_robot_has_the_same_minimum(name: str) -> None:
     assert ours.segments == theirs.segments
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "path",
-    [
-        path
-        for folder in ("arms", "parts")
-        for path in sorted((INSTANCES / folder).glob("*.toml"))
-        if path.stem != "bracket"  # a tenth of its edges is doubtful: it is a question of its mesh
-    ],
-    ids=lambda path: path.stem,
-)
-def test_built_scenes_without_their_robots_have_the_same_minima(path: Path) -> None:
-    built = cellcolor.build(path)
-    pairs = zip(built.configurations, built.node_color, strict=True)
-    own = [solutions[colors >= 0] for solutions, colors in pairs]
-    surface = built.surface
-    found = from_configurations(
-        surface.vertices, surface.faces, shuffled(own, 1)[0], conflicts="cut"
-    )
-    ours, theirs = (cellcolor.solve(each).solution for each in (found.surface, surface))
-    assert (ours.status, ours.segments) == (theirs.status, theirs.segments)
-
-
 @examples(40)
 @given(
     seed=st.integers(0, 10**6),
@@ -101,14 +74,6 @@ def test_built_scenes_without_their_robots_have_the_same_minima(path: Path) -> N
 )
 def test_planted_branches_are_found(seed: int, columns: int, rows: int, branches: int) -> None:
     check_planted(seed, columns, rows, branches)
-
-
-@pytest.mark.slow
-def test_planted_branches_of_2000_surfaces(record_property: pytest.RecordProperty) -> None:
-    rng = np.random.default_rng(0)
-    for seed in range(2000):
-        check_planted(seed, *rng.integers((2, 2, 1), (6, 5, 4)).tolist())
-        record_property("surfaces", seed + 1)
 
 
 def check_planted(seed: int, columns: int, rows: int, branches: int) -> None:
@@ -140,29 +105,6 @@ def check_planted(seed: int, columns: int, rows: int, branches: int) -> None:
     minimum = cellcolor.solve(found.surface, search_space="surface").solution
     if minimum.proved_for_surface and there.sum(axis=1).max() ** len(vertices) < 20_000:
         assert minimum.segments == vertex_minimum(planted)
-
-
-@given(
-    first=st.floats(-3, 3),
-    others=st.lists(st.floats(-3, 3), min_size=1, max_size=5),
-    seed=st.integers(0, 2**32 - 1),
-)
-def test_what_is_clear_is_nearest_from_both_ends(
-    first: float, others: list[float], seed: int
-) -> None:
-    here = np.array([first, *others])
-    there = here + np.random.default_rng(seed).normal(0, 0.3, len(here))
-    joints, slots = np.stack([here, there])[:, :, None], len(here)
-    alike = np.zeros((2, slots), dtype=np.int64)
-    matching = Nearest(joints, alike == 0, alike, np.array([np.inf]), None, np.inf, never)
-    for _, a, b in matching.along(np.array([[0, 1]]), NEVER)[0].tolist():
-        assert np.argmin(np.abs(there - here[a])) == b
-        assert np.argmin(np.abs(here - there[b])) == a
-
-
-def never(*_: int) -> bool:
-    """What is not clear is not linked."""
-    return False
 
 
 def around(vertices: Array, turns: float) -> Array:
@@ -232,20 +174,6 @@ def test_the_caller_settles_what_is_doubtful() -> None:
     assert "3 of 5 mesh edges doubtful (60.0%)" in str(without)
     (note,) = cellcolor.solve(without.surface).solution.notes
     assert "3 mesh edges of its surface are doubtful" in note
-
-
-def test_what_was_found_twice_counts_once() -> None:
-    """A solver from several seeds finds a solution again, some circles away or a little off."""
-    vertices, faces = plate(2, 2)
-    once = [np.array([[0.1 * v, 1.0], [0.1 * v + 2, -1.0]]) for v in range(4)]
-    again = [np.concatenate([own, own[::-1] + CIRCLE + 3e-5, own[:1]]) for own in once]
-    found = from_configurations(vertices, faces, again)
-    assert not found.doubtful
-    assert (
-        found.surface.vertex_colors
-        == from_configurations(vertices, faces, once).surface.vertex_colors
-    )
-    assert [own.tolist() for own in found.color_of] == [[0, 1, 1, 0, 0]] * 4
 
 
 def test_a_number_does_not_make_two_colors_one() -> None:

@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from library import PAPER
 from relabelled import isomorphic
 
 from cellcolor.data.imcgs import read_imcgs
@@ -69,13 +68,6 @@ def test_a_graph_comes_back(
     graph = replace(made, edges=every_color)
     back = read(tmp_path_factory.mktemp("read"), text_of(graph))
     assert isomorphic(graph, back)
-
-
-@pytest.mark.parametrize("name", ["figforcolor", "split-cell", "triple-junction"])
-def test_figures_of_the_paper_come_back(name: str, tmp_path: Path) -> None:
-    graph = Instance.read(PAPER / f"{name}.json")
-    names = tuple(f"c{color}" for color in range(len(graph.colors)))
-    assert isomorphic(replace(graph, colors=names), read(tmp_path, text_of(graph)))
 
 
 def test_corrections(tmp_path: Path) -> None:

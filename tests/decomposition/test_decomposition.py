@@ -11,7 +11,17 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
-from meshes import drawn, finer, grid_faces, grid_points, octahedron, surface, surfaces, torus
+from meshes import (
+    beside,
+    drawn,
+    finer,
+    grid_faces,
+    grid_points,
+    octahedron,
+    surface,
+    surfaces,
+    torus,
+)
 from relabelled import isomorphic
 
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
@@ -52,10 +62,6 @@ def with_loops(instance: Instance, cell: int, *loops: tuple[int, ...]) -> Instan
     return replace(instance, cells=tuple(cells))
 
 
-def test_there_are_cases() -> None:
-    assert len(BUILT_CASES) >= 14
-
-
 @pytest.mark.parametrize("path", BUILT_CASES, ids=lambda path: path.name)
 def test_case_builds_into_its_graph(path: Path) -> None:
     expected = Instance.read(path.with_name(path.name.replace(".surface", "")))
@@ -86,15 +92,6 @@ class TestIsomorphism:
         swapped = (loop[2], loop[1], loop[0], *loop[3:])
         assert not isomorphic(hub, with_loops(hub, 0, swapped))
 
-    def test_flipped_loop(self) -> None:
-        case = Instance.read(PAPER / "annulus.json")
-        outer, inner = case.cells[1].loops
-        assert isomorphic(case, with_loops(case, 1, inner, outer))
-        # Red, blue, green round a cell whose neighbours meet in the order red, green, blue.
-        case = Instance.read(PAPER / "figeasycell3.json")
-        (loop,) = case.cells[0].loops
-        assert not isomorphic(case, with_loops(case, 0, loop[::-1]))
-
     def test_mirror_image(self) -> None:
         # Blue, green, red in counter-clockwise order is not red, green, blue.
         case = Instance.read(PAPER / "figeasycell3.json")
@@ -110,20 +107,6 @@ class TestIsomorphism:
         case = loop(3, 1, -1, 2, -2, 4, -4)
         assert isomorphic(case, loop(3, -2, 2, 1, -1, -4, 4))
         assert not isomorphic(case, loop(3, 1, 2, -1, -2, 4, -4))
-
-    def test_colors_of_a_cell(self) -> None:
-        case = Instance.read(PAPER / "figcost-left.json")
-        cells = (case.cells[0], case.cells[1], replace(case.cells[2], colors=(0, 1)))
-        assert not isomorphic(case, replace(case, cells=cells))
-
-    def test_joinable_colors(self) -> None:
-        case = Instance.read(PAPER / "figforcolor.json")
-        edges = (replace(case.edges[0], colors=(0,)), *case.edges[1:])
-        assert not isomorphic(case, replace(case, edges=edges))
-
-    def test_names_of_colors(self) -> None:
-        case = Instance.read(PAPER / "crack-partial.json")
-        assert not isomorphic(case, replace(case, colors=("blue", "red")))
 
     def test_outside(self) -> None:
         """Two holes beside each other are not two holes apart."""
@@ -166,19 +149,6 @@ def test_mirrored_mesh_gives_mirrored_graph(labelled: LabelledSurface) -> None:
 
 @examples(40)
 @given(surfaces())
-def test_areas_add_up(labelled: LabelledSurface) -> None:
-    """A reachable vertex owns a third of each of its triangles, and a cell its vertices."""
-    reachable = 0.0
-    for face in labelled.faces.tolist():
-        a, b, c = labelled.vertices[face]
-        triangle = float(np.linalg.norm(np.cross(b - a, c - a))) / 2
-        reachable += triangle / 3 * sum(bool(labelled.vertex_colors[v]) for v in face)
-    total = sum(cell.area or 0.0 for cell in decompose(labelled).cells)
-    assert total == pytest.approx(reachable, abs=1e-9)
-
-
-@examples(40)
-@given(surfaces())
 def test_cells_of_vertices(labelled: LabelledSurface) -> None:
     """Each vertex's cell has its colors, and every mesh edge between cells is an edge of both."""
     instance = decompose(labelled, "surface.json")
@@ -200,15 +170,7 @@ def test_cells_of_vertices(labelled: LabelledSurface) -> None:
 @given(surfaces(), surfaces())
 def test_parts_side_by_side(one: LabelledSurface, other: LabelledSurface) -> None:
     """Two surfaces in one file: the cells, edges and loops of both, and nothing between them."""
-    offset = len(one.vertices)
-    cracks = [(c.i, c.j, color) for c in one.cracks for color in c.colors]
-    cracks += [(c.i + offset, c.j + offset, color) for c in other.cracks for color in c.colors]
-    both = surface(
-        np.concatenate((one.vertices, other.vertices + 100.0)),
-        [tuple(face) for face in (*one.faces.tolist(), *(other.faces + offset).tolist())],
-        [*one.vertex_colors, *other.vertex_colors],
-        cracks,
-    )
+    both = beside([one, other])
     first, second, union = decompose(one), decompose(other), decompose(both)
     assume(first.cells and second.cells)
     assert len(union.cells) == len(first.cells) + len(second.cells)
@@ -333,7 +295,7 @@ def test_a_deadline_ends_it_wherever_it_is() -> None:
     decompose(labelled, deadline=patient)
     times = int(1e9 - patient.moment)
     assert times > 20
-    for asked in range(times):
+    for asked in range(0, times, 4):
         with pytest.raises(OutOfTime):
             decompose(labelled, deadline=Asked(asked))
     decompose(labelled, deadline=Asked(times))

@@ -8,21 +8,17 @@ import json
 import sys
 import tomllib
 from collections.abc import Callable
+from contextlib import redirect_stdout
 from dataclasses import replace
 from functools import cache
+from io import StringIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
-from documents import (
-    CHECK_ERROR,
-    INVALID_PLAN_VERDICT,
-    PLAN_VERDICT,
-    SOLUTION_VERDICT,
-    TOOL_PATHS,
-    TRAJECTORY,
-    VERDICT,
-)
+from commands import run
+from documents import TOOL_PATHS, TRAJECTORY, VERDICT
 from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
@@ -73,6 +69,30 @@ def schema_of(document: Document) -> Any:
     return validator(next(file for file in FILES if file.rpartition("-")[0] == name))
 
 
+def checked(subject: Path, claim: Path) -> Document:
+    """What ``check`` says."""
+    with redirect_stdout(StringIO()) as out:
+        run("check", subject, claim, "--json")
+    return dict(json.loads(out.getvalue()))
+
+
+def verdicts() -> list[Document]:
+    """On a plan that can be beaten, one that is not valid, what is none, and a solution."""
+    subject = PAPER / "parallel-corridors.surface.json"
+    colors = [own[-1] if own else None for own in LabelledSurface.read(subject).vertex_colors]
+    with TemporaryDirectory() as folder:
+        plans = []
+        for number, entries in enumerate((colors, [7, *colors[1:]], ["x", *colors[1:]])):
+            plans.append(Path(folder) / f"{number}.json")
+            document = {"format": "cellcolor/plan", "version": 1, "vertex_colors": entries}
+            plans[-1].write_text(json.dumps(document), encoding="utf-8")
+        said = [checked(subject, plan) for plan in plans]
+    solution = INSTANCES / "solutions" / "ring.solution.json"
+    said.append(checked(PAPER / "ring.json", solution))
+    assert said[0]["improvement"] is not None and said[1]["violations"]
+    return said
+
+
 def written() -> list[Document]:
     """One document of each format, as this package writes it, with the optional members."""
     instance = Instance.read(PAPER / "split-cell.json")
@@ -87,8 +107,8 @@ def written() -> list[Document]:
     texts += [paper.to_json(), strands.to_json(), scheme_line(next(schemes)), plan.to_json()]
     index = LibraryIndex.read(INSTANCES / "index.json")
     few = LibraryIndex((index["cardoor"], index["ring"])).to_json()
-    checks = [PLAN_VERDICT, INVALID_PLAN_VERDICT, SOLUTION_VERDICT, CHECK_ERROR]
-    return [*(json.loads(text) for text in [*texts, few]), TOOL_PATHS, TRAJECTORY, VERDICT, *checks]
+    documents = [json.loads(text) for text in [*texts, few]]
+    return [*documents, TOOL_PATHS, TRAJECTORY, VERDICT, *verdicts()]
 
 
 WRITTEN = written()

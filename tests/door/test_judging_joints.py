@@ -125,25 +125,6 @@ def test_a_path_that_changes_its_color_in_contact() -> None:
     assert said.endswith(" of color in contact")
 
 
-def test_a_path_with_fewer_strokes_than_its_colors_have_segments() -> None:
-    """All vertices of one color in one stroke, wherever they are: the path leaps."""
-    plan = Plan(tuple([own[-1] if own else None for own in scene().surface.vertex_colors]))
-    of_plan = the_oracle().judge(plan)
-    joints = joints_of(scene(), plan)
-    colors = sorted({color for color in plan.vertex_colors if color is not None})
-    rows, contact = [], []
-    for color in colors:
-        own = [vertex for vertex, other in enumerate(plan.vertex_colors) if other == color]
-        rows += [*own, own[-1]]
-        contact += [True] * len(own) + [False]
-    verdict = the_oracle().judge(cellcolor.ContactPath(joints[rows], contact=np.array(contact)))
-    assert of_plan.segments is not None and len(colors) < of_plan.segments
-    assert (verdict.strokes, verdict.color_changes) == (len(colors), 0)
-    assert verdict.needed == verdict.segments == of_plan.segments
-    assert verdict.beatable_by == of_plan.beatable_by
-    assert "its strokes are fewer than these segments" in str(verdict)
-
-
 def test_a_path_that_leaves_vertices_out_is_not_compared() -> None:
     path, vertices = walk_of(scene(), best())
     out = set(reached()[4:9])
@@ -177,19 +158,6 @@ def test_a_contact_in_no_color_is_none() -> None:
         f"in contact at sample {samples[0]}, but {scene().branches[branch]!r} fails the test "
         "'obstacle collision' there"
     )
-
-
-def test_what_a_path_does_where_no_color_reaches_is_not_asked() -> None:
-    """In contact at a vertex without colors, in a stroke of its own."""
-    path, _ = walk_of(scene(), best())
-    beyond = scene().surface.vertex_colors.index(())
-    branch = int(np.flatnonzero(~np.isnan(scene().configurations[beyond, :, 0]))[0])
-    assert path.contact is not None
-    joints = np.vstack([path.joints, scene().configurations[beyond, branch]])
-    verdict = the_oracle().judge(cellcolor.ContactPath(joints, None, np.append(path.contact, True)))
-    least = the_oracle().bounds.lower
-    assert verdict.valid and verdict.plan == best()
-    assert (verdict.strokes, verdict.segments, verdict.needed) == (least + 1, least, least + 1)
 
 
 def test_points_that_the_joints_do_not_give() -> None:

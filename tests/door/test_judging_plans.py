@@ -9,14 +9,13 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
-from meshes import drawn, surfaces
+from meshes import drawn
 
 from cellcolor import judge, proven_range
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import BeatenBound, InputError
 from cellcolor.oracle import ProvenRange, Verdict
-from examples import examples
 
 CORRIDORS = PAPER / "parallel-corridors.surface.json"
 RED, BLUE, GREEN = 0, 1, 2
@@ -111,20 +110,6 @@ def test_contradiction_is_an_error() -> None:
     with pytest.raises(BeatenBound) as found:
         judge(surface, Plan((RED,) * 4), bounds=ProvenRange(2, 5))
     assert (found.value.segments, found.value.lower) == (1, 2)
-
-
-@examples(15)
-@given(surfaces(), st.data())
-def test_no_plan_beats_the_lower_bound(surface: LabelledSurface, data: st.DataObject) -> None:
-    choices = [st.sampled_from(colors) if colors else st.none() for colors in surface.vertex_colors]
-    plan = Plan(data.draw(st.tuples(*choices)))
-    verdict = judge(surface, plan)
-    assert verdict.segments is not None
-    assert verdict.bounds is not None
-    assert verdict.segments >= verdict.bounds.lower
-    assert verdict.optimal in (
-        (True,) if verdict.segments == verdict.bounds.lower else (False, None)
-    )
 
 
 @pytest.mark.parametrize("ends", [(7, 5), (-1, 2), (1.0, 2), (True, 2)])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +11,7 @@ from shipped import shipped
 import cellcolor
 import cellcolor.frontend.prepared
 from cellcolor.arrays import Array
-from cellcolor.deadline import Deadline
-from cellcolor.door.planned import KINDS, PlannedScene
-from cellcolor.errors import InputError
+from cellcolor.door.planned import KINDS
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.ways import Transfer, Ways
 
@@ -109,42 +106,6 @@ def test_what_was_given_up_is_said_beside_what_is_covered() -> None:
     assert any(share in note and "sliver policy" in note for note in planned.verdict.notes)
     assert f"slivers: {planned.instance.coverage}" in str(planned)
     assert f"{share} of the surface given up as slivers" in planned.page().decode()
-
-
-def test_what_is_wrong_is_said_at_once() -> None:
-    with pytest.raises(InputError, match="is no scene"):
-        cellcolor.plan("wok.json")
-    with pytest.raises(InputError, match=r"motion\.wide"):
-        cellcolor.plan("wok", wide=0.1)
-    with pytest.raises(InputError, match="zigzag"):
-        cellcolor.plan("wok", pattern="zigzag")
-    with pytest.raises(InputError, match="time_limit"):
-        cellcolor.plan("wok", time_limit=-1)
-
-
-def test_questions_leave_time_for_the_files(monkeypatch: pytest.MonkeyPatch) -> None:
-    """All files but the page are made before the questions, and not again afterwards."""
-    limit = Deadline.after(1000)
-    given: list[float] = []
-    made: list[int] = []
-    files = PlannedScene.files
-
-    def slow(self: PlannedScene, step: float | None = None) -> dict[str, bytes]:
-        made.append(self.made is None)
-        time.sleep(0.2 * (self.made is None))
-        return files(self, step)
-
-    def asked(_names: object, _subject: object, deadline: Deadline, _progress: object) -> object:
-        given.append(limit.moment - deadline.moment)
-        return None, ()
-
-    monkeypatch.setattr(PlannedScene, "files", slow)
-    monkeypatch.setattr("cellcolor.door.planning._answered", asked)
-    planned = cellcolor.plan(
-        shipped("square", 200), spacing_m=0.1, ask=("place",), time_limit=limit
-    )
-    assert given[0] >= 0.2
-    assert planned.files() == planned.made and made == [True, False]
 
 
 @pytest.mark.second

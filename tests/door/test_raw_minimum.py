@@ -34,7 +34,7 @@ def test_the_raw_minimum_is_that_of_the_scene_without_a_policy(
     assert raw.cracks == without.surface.cracks and raw.colors == without.surface.colors
     expected = cellcolor.solve(without)
     assert expected.solution.proved_for_surface
-    areas = built.prepared.surface.vertex_areas()
+    areas = built.prepared.surface.mesh.vertex_areas
     share = areas[list(built.surface.given_up)].sum() / areas.sum()
     solved = cellcolor.solve(built)
     assert solved.solution.notes == (

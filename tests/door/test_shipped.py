@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
@@ -112,23 +111,6 @@ def test_unknown_names(name: str, text: str) -> None:
     with pytest.raises(InputError) as caught:
         cellcolor.read(name)
     assert text in str(caught.value)
-
-
-def test_commands_take_names(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert main(["solve", "ring", "--json", "-o", "s.json"]) == 0
-    assert json.loads(capsys.readouterr().out)["segments"] == 2
-    assert main(["check", "ring", "s.json"]) == 0
-    assert main(["build", "ring.surface.json", "-o", "r.json"]) == 0
-    capsys.readouterr()
-    assert main(["solve", "rimg"]) == 2
-    assert capsys.readouterr().err == (
-        "cellcolor: rimg: is not a file, and nothing of that name is shipped; "
-        "did you mean 'ring'?\n"
-    )
-    assert sorted(file.name for file in tmp_path.iterdir()) == ["r.json", "s.json"]
 
 
 SOLVE = """

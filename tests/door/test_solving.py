@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import meshes
 import numpy as np
 import pytest
 from documents import PLAN, SOLUTION
@@ -199,16 +198,6 @@ def test_decompose_gives_what_is_solved() -> None:
     assert cellcolor.decompose(HALVES).surface is None  # it is in no file
     with pytest.raises(cellcolor.OutOfTime):
         cellcolor.decompose(RING_SURFACE, time_limit=1e-9)
-
-
-def test_errors_name_the_file(tmp_path: Path) -> None:
-    torus = tmp_path / "torus.surface.json"
-    points, faces = meshes.torus()
-    one_color = meshes.surface(points, faces, [[0]] * len(points))
-    torus.write_text(one_color.to_json(), encoding="utf-8")
-    for function in (cellcolor.solve, lambda s: cellcolor.judge(s, [0] * len(points))):
-        with pytest.raises(InputError, match=r"torus\.surface\.json: vertices\[0\]: .* not planar"):
-            function(torus)
 
 
 def test_time_ends_the_work() -> None:

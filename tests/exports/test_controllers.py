@@ -25,9 +25,8 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.errors import InputError
 from cellcolor.exports.interface import ArmAxes, PlannedMotion
 from cellcolor.exports.programs import ASIDE, BESIDE, PRESSED, WITHIN
-from cellcolor.exports.registry import EXPORTS, exported, why_no_program
+from cellcolor.exports.registry import exported, why_no_program
 from cellcolor.exports.samples import stretches
-from cellcolor.files.writing import Output, check_output, write
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.setup import Controller, Setup
@@ -205,12 +204,6 @@ def test_a_stretch_that_begins_in_contact_presses_from_there() -> None:
     first, second = read("cellcolor.script", planned).stretches
     assert first[-1].kind == "release"
     assert second[0].kind == "press"
-
-
-@pytest.mark.parametrize("name", ["cellcolor.script", "cellcolor_linear.script"])
-def test_without_a_force_none_is_pressed(name: str) -> None:
-    text = exported(on_the_wok(force_n=0.0))[name].decode()
-    assert "force_mode" not in text and "pressing" not in text
 
 
 def test_krl_is_never_faster_than_planned_by_more_than_its_smallest_speed() -> None:
@@ -427,18 +420,3 @@ def test_messages_have_the_fixed_step_and_accelerations() -> None:
     faster = np.array([point["accelerations"] for point in message["points"]])
     assert np.allclose(faster[1:-1], (speeds[2:] - speeds[:-2]) / 0.02, atol=1e-6)
     assert not faster[[0, -1]].any()
-
-
-@pytest.mark.parametrize("name", EXPORTS)
-def test_only_own_files_are_overwritten(name: str, tmp_path: Path) -> None:
-    plain = name.replace("_linear", "")
-    planned = driven(PROGRAMS.get(plain, "ur5"), **FANUC_ON_KR6.get(plain, {}))
-    path = tmp_path / name
-    made = exported(planned)[name]
-    assert made == exported(planned)[name]
-    write([Output(path, EXPORTS[name].kind, [made])])
-    check_output(path, EXPORTS[name].kind)
-    for export in EXPORTS.values():
-        if export.kind.name != EXPORTS[name].kind.name:
-            with pytest.raises(InputError, match="not overwritten"):
-                check_output(path, export.kind)

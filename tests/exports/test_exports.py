@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,19 +24,6 @@ def planned() -> PlannedMotion:
 def content(name: str, planned: PlannedMotion) -> bytes:
     made: bytes = EXPORTS[name].content(planned)
     return made
-
-
-def test_the_table_of_joints_is_the_trajectory(planned: PlannedMotion) -> None:
-    trajectory = planned.trajectory
-    text = content("joints.csv", planned).decode()
-    head, *rows = csv.reader(io.StringIO(text))
-    assert ",".join(head[:-3]) == "time_s,segment,contact,x,y,z,nx,ny,nz,q1,q2,q3,q4,q5,q6"
-    assert head[-3:] == ["repeated", "unplanned", "extra_lift_off"]
-    columns = np.array(rows, dtype=float)[:, :-3]
-    expected = [trajectory.times[:, None], trajectory.segment[:, None]]
-    expected += [trajectory.contact[:, None], trajectory.points, trajectory.normals]
-    assert np.allclose(columns, np.concatenate([*expected, trajectory.joints], axis=1), atol=1e-9)
-    assert {row[2] for row in rows} == {"0", "1"}
 
 
 def test_the_judge_reads_the_table_of_joints(planned: PlannedMotion, tmp_path: Path) -> None:

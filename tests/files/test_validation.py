@@ -26,7 +26,6 @@ from cellcolor.data.instance import Instance, KnownResult, KnownResults, Surface
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import (
     Seam,
-    SubCell,
 )
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.decomposition import decompose
@@ -140,30 +139,19 @@ REFUSED: dict[str, tuple[Callable[[], object], str, str]] = {
     "colors as text": (lambda: Cell(0, "01", ()), "colors", "array"),
     "colors as a set": (lambda: Cell(0, {0, 1}, ()), "colors", "array"),
     "loop of one number": (lambda: Cell(0, (0,), (1,)), "loops[0]", "array"),
-    "endless area": (lambda: Cell(0, (0,), (), float("inf")), "area", "finite"),
-    "area less than nothing": (lambda: Cell(0, (0,), (), -1.0), "area", "greater"),
-    "edge of a name": (lambda: Edge("1", 0, 1), "id", "integer"),
     "cells as documents": (
         lambda: Instance("x", ("red",), ({"id": 0},), ()),
         "cells[0]",
         "Cell",
     ),
-    "colors unknown": (
-        lambda: Instance("x", ("red",), (Cell(0, (1,), ()),), ()),
-        "cells[0].colors",
-        "",
-    ),
     "meta that is no JSON": (lambda: Instance("x", (), (), (), {"a": {1}}), "meta", "JSON"),
-    "known below nothing": (lambda: KnownResult(-1), "segments", "greater"),
     "end of a crack as float": (lambda: Crack(1.0, 2, (0,)), "i", "integer"),
     "share that is not a number": (
         lambda: Coverage(1.0, float("nan"), 0.0),
         "unreachable",
         "finite",
     ),
-    "dart as float": (lambda: SubCell(0, (1.0,), 0), "darts[0]", "integer"),
     "bound as True": (lambda: Bound("cover", True, "surface"), "value", "integer"),
-    "bound of what": (lambda: Bound("cover", 1, "paper"), "holds_for", "surface"),
     "seam of no end": (lambda: Seam(5, 0, None, 1, 1), "from_", "integer"),
 }
 

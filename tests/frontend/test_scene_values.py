@@ -120,16 +120,6 @@ def test_values_are_pickled_and_compared() -> None:
     assert "sha256" in scene.model_dump(mode="json")["object"]
 
 
-def test_setups_with_names_of_links_and_joints_are_hashed_too() -> None:
-    """By content: in whichever order the names stand."""
-    one, other = (
-        Setup.read(SETUP).varied(robot={"fixed_joints": dict(named)})
-        for named in ((("rail", 0.5), ("jaw", 0.1)), (("jaw", 0.1), ("rail", 0.5)))
-    )
-    assert one == other and hash(one) == hash(other)
-    assert len({one, other, Setup.read(SETUP)}) == 2
-
-
 def test_a_scene_without_any_file() -> None:
     """Robot, tool, setup and object as text, values and arrays: nothing is there to be read."""
     shipped = Setup.read(SETUP)
@@ -180,22 +170,6 @@ def test_arrays_are_held_to_what_mesh_files_are(vertices: Any, faces: Any, field
         ArraysObject(vertices=np.array(vertices), faces=np.array(faces)).surface()
     assert caught.value.file is None and str(caught.value.field).startswith(field)
     assert not caught.value.message.startswith("Value error")  # pydantic's words
-
-
-def test_what_is_no_part_is_refused() -> None:
-    for what in ("wok.stl", None, (CORNERS,)):
-        with pytest.raises(InputError, match="must be a part"):
-            Scene.read(WOK).with_object(what)
-
-
-def test_names_of_files_are_relative_to_the_folder(tmp_path: Path) -> None:
-    content = Scene.read(WOK).model_dump()
-    scene = Scene(**content | {"folder": WOK.parent})
-    assert scene.setup == Setup.read(WOK.parent / "../../models/robots/ur5_polishing.toml")
-    assert scene.model_dump() == content
-    with pytest.raises(InputError, match="No such file") as caught:
-        Scene(**content | {"folder": tmp_path})
-    assert str(caught.value.file).startswith(str(tmp_path))
 
 
 def test_a_scene_prints_what_it_is_in_one_line() -> None:

@@ -6,7 +6,6 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from planners import largest_set_first
-from reasons import Reason
 from shipped import SCENES, shipped
 from vertex_minima import covers
 
@@ -150,22 +149,3 @@ def test_three_colors_over_the_wok_with_the_obstacle(robot: Robot) -> None:
     assert (number,) in surface.vertex_colors
     rows = np.flatnonzero(result.node_color[:, branch] == number)
     assert not any(wrist_above(robot, result.configurations[rows, branch]))
-
-
-def test_collisions_over_the_wok_do_not_ask_for_the_wrist_above(robot: Robot) -> None:
-    """What differs from the paper: of two wrists, the one above the forearm is lost more often."""
-    result = built("wok", 500)
-    solved = ~np.isnan(result.configurations[:, :, 0])
-    valid = result.reasons == Reason.VALID
-    above = np.zeros(solved.shape, dtype=bool)
-    above[solved] = wrist_above(robot, result.configurations[solved])
-    assert 0.4 < above[valid].mean() < 0.5
-    only_above = only_below = 0
-    for first in range(0, 8, 2):  # the two wrists of each shoulder and elbow
-        pair = slice(first, first + 2)
-        mixed = solved[:, pair].all(axis=1) & (above[:, first] != above[:, first + 1])
-        one = mixed & (valid[:, first] != valid[:, first + 1])
-        survivor = (above[:, pair] & valid[:, pair]).any(axis=1)
-        only_above += int((one & survivor).sum())
-        only_below += int((one & ~survivor).sum())
-    assert only_below > 4 * only_above

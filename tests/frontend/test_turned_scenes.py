@@ -7,8 +7,6 @@ import dh_arms
 import numpy as np
 import pytest
 from bent_tools import tip_frame
-from hypothesis import given
-from hypothesis import strategies as st
 from turned_scenes import SHIPPED, plate, setup
 from vertex_minima import vertex_minimum
 
@@ -18,7 +16,6 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import Setup, build_surface
 from cellcolor.frontend.build import TURN_NOT_DEFINED
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.setup import Turn
 
 DOWN = np.array([0.0, 0.0, -1.0])
 LIMITS = (-0.4, 0.0)  # rad, of joint 6: so narrow that no turn alone reaches the whole plate
@@ -74,7 +71,7 @@ def test_scenes_with_a_free_turn_know_nothing_of_it() -> None:
 def test_no_edge_through_a_place_without_a_turn_is_linked() -> None:
     """Over it the tool would have to turn by half a circle at once."""
     free = prepare(plate(setup(None)))
-    edges = free.surface.edges()
+    edges = free.surface.mesh.edges
     inner = int(np.argmin(np.abs(free.surface.vertices[edges].mean(axis=1)[:, 1])))
     i, j = edges[inner].tolist()
     x, y, _ = free.surface.vertices[[i, j]].mean(axis=0).tolist()
@@ -137,37 +134,6 @@ def test_a_set_of_turns_has_the_colors_of_each_turn_and_its_minimum_is_exact() -
         assert {several.surface.colors[color] for color in colors} == names
     solved = cellcolor.solve(several)
     assert solved.segments == vertex_minimum(several.surface) > 1
-
-
-def test_equally_spaced_turns_are_those_of_the_list() -> None:
-    listed = build_surface(plate(setup({"along": (1, 0, 0), "turns_deg": (0.0, 120.0, 240.0)}), 20))
-    spaced = build_surface(plate(setup({"along": (1, 0, 0), "turns": 3}), 20))
-    assert spaced.branches == listed.branches
-    assert spaced.surface.colors == listed.surface.colors
-    assert spaced.surface.vertex_colors == listed.surface.vertex_colors
-
-
-@given(
-    st.sampled_from([{"along": (1.0, 0.0, 0.5)}, {"towards_m": (0.1, 0.2, 0.3)}]),
-    st.one_of(
-        st.just({}),
-        st.fixed_dictionaries({"turns": st.integers(1, 360)}),
-        st.fixed_dictionaries(
-            {
-                "turns_deg": st.lists(
-                    st.integers(-179, 180).map(float), min_size=1, max_size=9, unique=True
-                ).map(tuple)
-            }
-        ),
-    ),
-)
-def test_a_turn_is_written_as_it_was_given(
-    rule: dict[str, object], some: dict[str, object]
-) -> None:
-    turn = Turn(**rule, **some)
-    assert set(turn.model_dump(mode="json")) == set(rule | some)
-    assert Turn(**turn.model_dump()) == turn
-    assert turn.is_choice == bool(some)
 
 
 @pytest.mark.parametrize(

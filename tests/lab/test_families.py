@@ -96,33 +96,6 @@ def test_hub_minimum_is_that_over_all_partitions() -> None:
         assert hub_minimum(ring) == best
 
 
-@pytest.mark.parametrize(("rows", "columns", "side"), [(1, 1, 2), (1, 3, 1), (2, 2, 3), (3, 2, 1)])
-def test_hub_grid_is_a_grid_of_hubs_that_share_petals(rows: int, columns: int, side: int) -> None:
-    instance = hub_grid(4, rows, columns, 3, side)
-    hubs = [cell for cell in instance.cells if len(cell.colors) == 3]
-    petals = [cell for cell in instance.cells if len(cell.colors) == 1]
-    strips = rows * (columns + 1) + columns * (rows + 1)
-    assert len(hubs) == rows * columns and len(petals) == strips * side
-    assert len(hubs) + len(petals) == len(instance.cells)
-    live = {c.id: [d for d in c.loops[0] if instance.joinable(d)] for c in instance.cells}
-    assert all(len(cell.loops) == 1 for cell in instance.cells)
-    assert all(len(live[hub.id]) == 4 * side for hub in hubs)
-    shared = [petal for petal in petals if len(live[petal.id]) == 2]
-    assert len(shared) == (rows * (columns - 1) + columns * (rows - 1)) * side
-    neighbors = {frozenset(instance.across(dart) for dart in live[petal.id]) for petal in shared}
-    assert neighbors == {
-        frozenset({one.id, other.id})
-        for one in hubs
-        for other in hubs
-        if other.id - one.id == columns
-        or (other.id - one.id == 1 and one.id % columns < columns - 1)
-    }
-    # Successive petals of a side touch, across an edge that no color can cross.
-    for edge in instance.edges:
-        if {edge.left, edge.right} <= {petal.id for petal in petals}:
-            assert not instance.joinable(edge.id)
-
-
 @pytest.mark.parametrize(
     ("rows", "columns", "colors", "side"), [(1, 2, 2, 2), (1, 3, 3, 1), (2, 2, 2, 1), (2, 2, 3, 1)]
 )

@@ -13,9 +13,7 @@ from hypothesis import strategies as st
 
 from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError
-from cellcolor.lab.runs.row import Row, compared, disagreements
 from cellcolor.lab.runs.summary import (
-    common,
     contestants_of,
     median_seconds,
     par2,
@@ -27,7 +25,7 @@ from cellcolor.lab.runs.sweep import (
     of_family,
     taking_turns,
 )
-from cellcolor.lab.runs.table import TableFile, read_table
+from cellcolor.lab.runs.table import Row, TableFile, compared, disagreements, read_table
 
 ROW = Row(
     family="f",
@@ -93,10 +91,6 @@ class TestStatistics:
     def test_contestants(self) -> None:
         rows = [*times("b", 1.0), *times("cp-sat", 1.0), replace(times("b", 1.0)[0], workers=2)]
         assert contestants_of(rows) == ["cp-sat", "b", "b@2"]
-
-    def test_only_what_all_have_tried_is_compared(self) -> None:
-        rows = times("a", 1.0, 2.0, 3.0) + times("b", 1.0, 2.0)
-        assert {row.sha256 for row in common(rows)} == {f"{n:064}" for n in (0, 1)}
 
 
 class TestAgreement:

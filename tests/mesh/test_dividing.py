@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from triangles import any_meshes, bumpy_ball
 
 from cellcolor.mesh.dividing import cut, halved, new_points, with_longest_sides
-from cellcolor.mesh.oriented import directed_edges
-from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.mesh.triangle_mesh import TriangleMesh, directed_edges
 
 SEEDS, SHARES = st.integers(0, 10**6), st.floats(0.0, 1.0)
 

@@ -11,7 +11,7 @@ from meshes import grid_faces
 from numpy.typing import NDArray
 
 from cellcolor.errors import InputError
-from cellcolor.mesh.oriented import directed_edges
+from cellcolor.mesh.triangle_mesh import directed_edges
 
 Faces = NDArray[np.int64]
 FEW = st.lists(st.permutations(range(6)).map(lambda order: order[:3]), min_size=1, max_size=8)

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from triangles import any_meshes, bumpy_ball
 
-from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 SEEDS = st.integers(0, 10**6)
 
@@ -75,17 +75,6 @@ def test_parts_are_those_of_a_graph_of_triangles(mesh: TriangleMesh, data: st.Da
         for number, members in enumerate(nx.connected_components(graph)):
             number_of[list(members)] = number
         assert same_groups(mesh.parts(barred), number_of)
-
-
-@given(st.integers(1, 9), st.data())
-def test_grouped_by_pairs(count: int, data: st.DataObject) -> None:
-    things = st.integers(0, count - 1)
-    pairs = data.draw(st.lists(st.tuples(things, things)))
-    graph = nx.empty_graph(count)
-    graph.add_edges_from(pairs)
-    found = grouped(count, np.array(pairs, dtype=np.int64).reshape(-1, 2))
-    expected = {frozenset(members) for members in nx.connected_components(graph)}
-    assert {frozenset(np.flatnonzero(found == k).tolist()) for k in found} == expected
 
 
 @given(any_meshes())
@@ -161,17 +150,6 @@ def test_shares_are_those_that_a_point_was_made_with(seed: int, count: int) -> N
     triangles = rng.integers(len(mesh.corners), size=count)
     points = (shares[:, :, None] * mesh.points[mesh.corners[triangles]]).sum(axis=1)
     assert np.allclose(mesh.shares(triangles, points), shares)
-
-
-def test_what_is_computed_cannot_be_changed() -> None:
-    """It is kept: whoever changed it would change it for all."""
-    mesh = bumpy_ball(0)
-    names = "edges edge_of_side triangles_at lengths areas area_vectors triangle_normals"
-    for name in [*names.split(), "vertex_areas", "vertex_normals", "border"]:
-        array = getattr(mesh, name)
-        assert array is getattr(mesh, name)
-        with pytest.raises(ValueError, match="read-only"):
-            array[0] = array[0]
 
 
 def test_a_mesh_without_triangles() -> None:

@@ -53,19 +53,6 @@ def test_unwrapped_positions_are_the_same_and_near_each_other(
             assert abs(at - before) < math.pi + 1e-9
 
 
-@given(st.lists(MIXED.filter(lambda one: len(one) == 1), min_size=1, max_size=9))
-def test_what_is_beyond_the_limits_is_as_little_as_can_be(
-    path: list[list[tuple[bool, float, float]]],
-) -> None:
-    """Held against every number of turns from -9 to 9."""
-    slides, way = path[0][0][0], [row[0][1] for row in path]
-    found = space([slides]).beyond(np.array(way)[:, None])
-    turns = [0] if slides else range(-9, 10)
-    out = [[not -2.0 <= at + math.tau * turn <= 3.0 for at in way] for turn in turns]
-    assert int(found.sum()) == min(map(sum, out))
-    assert found.tolist() in out
-
-
 @given(st.lists(st.floats(-9.0, 9.0), min_size=1, max_size=4), st.floats(-9.0, 0.0))
 def test_a_slide_fits_as_it_is_or_not_at_all(path: list[float], lower: float) -> None:
     both = space([True, False], lower, lower + 7.0)

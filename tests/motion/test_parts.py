@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import NEVER
 from cellcolor.frontend.arm.joint_space import JointSpace
-from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.motion.following import Followed, Samples, sampled, with_normals_of
+from cellcolor.motion.following import Followed, Samples, sampled
 from cellcolor.motion.order import Visit, chosen_turns, ordered
 from cellcolor.motion.strokes import Stroke, cut_where_full, trimmed
 from cellcolor.motion.ways import quickest_way
@@ -54,24 +53,6 @@ def test_samples_lie_on_the_path_and_are_near_each_other(
         part = np.clip(((point - start) * along).sum(axis=1) / squares, 0, 1)
         off = np.linalg.norm(start + part[:, None] * along - point, axis=1)
         assert off.min() < 1e-9
-
-
-@given(
-    st.lists(st.floats(-9.0, 9.0), min_size=1, max_size=5),
-    st.floats(-7.0, 0.0),
-    st.floats(0.0, 7.0),
-)
-def test_whole_turns_are_all_that_fit(angles: list[float], lower: float, upper: float) -> None:
-    joints = np.array(angles)[:, None]
-    space = turning([lower], [upper])
-    (found,) = space.turns(joints)
-    fitting = [
-        turn
-        for turn in range(-10, 11)
-        if all(lower - 1e-9 <= angle + 2 * np.pi * turn <= upper + 1e-9 for angle in angles)
-    ]
-    assert found.tolist() == fitting
-    assert space.fits(joints) == bool(fitting)
 
 
 def test_a_bad_sample_and_a_jump_cut_a_path_and_are_named() -> None:
@@ -151,31 +132,6 @@ def test_a_way_round_is_found_and_all_its_moves_are_free(seed: int) -> None:
         assert wall(start + np.linspace(0, 1, 777)[:, None] * (end - start)).all()
 
 
-def test_no_way_is_found_through_what_is_shut() -> None:
-    def shut(configurations: np.ndarray) -> np.ndarray:
-        return np.asarray(np.abs(configurations[:, 0] - 1) > 0.2)
-
-    assert way_over(shut, 0, 2) is None
-
-
-def test_turns_are_chosen_so_that_straight_moves_are_free() -> None:
-    """A folded elbow: a joint that cannot pass pi has to come back through zero."""
-    visits = []
-    for angle in (2.5, 4.66):
-        at = np.array([angle])
-        visits.append(Visit(at, at, np.array([[angle], [angle + 1e-3]])))
-
-    def detour(start: np.ndarray, end: np.ndarray) -> float:
-        way = np.linspace(start[0], end[0], 200)
-        return 100.0 if (np.abs(np.abs(way) - np.pi) < 0.1).any() else 0.0
-
-    limits = turning([-2 * np.pi], [2 * np.pi])
-    free = chosen_turns(visits, np.array([1.5]), limits, np.array([3.0]), detour)
-    assert [int(own[0]) for own in free] == [0, -1]
-    near = chosen_turns(visits, None, limits, np.array([3.0]), lambda *_: 0.0)
-    assert int(near[0][0]) == int(near[1][0])
-
-
 @pytest.mark.parametrize("home", [np.zeros(4), None])
 def test_turns_of_many_strokes_are_chosen_so_that_straight_moves_are_free(
     home: np.ndarray | None,
@@ -210,25 +166,3 @@ def test_strokes_are_ordered_and_turned_round_so_that_transfers_are_short() -> N
     way = [0.0, *(one.joints[at, 0] for one in found for at in (0, -1)), 0.0]
     between = sum(abs(b - a) for a, b in zip(way[::2], way[1::2], strict=True))
     assert between == pytest.approx(0.1 + 0.1 + 0.1 + 2.9)
-
-
-def test_normals_are_those_of_the_surface_beside_a_sharp_edge() -> None:
-    """Two triangles that meet at a right angle: a normal from point to point would be degrees off.
-
-    The expected normals are barycentric means, computed in the plane of the first triangle.
-    """
-    vertices = np.array([[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.0, 0.02, 0.0]])
-    normals = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    ends = np.array([[0.001, 0.001, 0.0], [0.018, 0.001, 0.0]])
-    weights = np.column_stack([1 - ends[:, 0] / 0.02 - ends[:, 1] / 0.02, ends[:, :2] / 0.02])
-    own = weights @ normals
-    own /= np.linalg.norm(own, axis=1, keepdims=True)
-    path = ToolPath(0, 0, ends, own, np.zeros(1, dtype=np.int64))
-    faces = np.array([[0, 1, 2]])
-    given = sampled(path)
-    samples = with_normals_of(given, TriangleMesh(vertices, faces), normals)
-    x = samples.points[:, 0] / 0.02
-    expected = np.column_stack([x, np.zeros_like(x), 1 - x])
-    expected /= np.linalg.norm(expected, axis=1, keepdims=True)
-    assert np.abs(samples.normals - expected).max() < 1e-9
-    assert np.degrees(np.arccos(np.clip((given.normals * expected).sum(axis=1), -1, 1))).max() > 1

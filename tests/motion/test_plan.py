@@ -8,13 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pinocchio as pin
 import pytest
-from motions import Planned, planned, planned_scene
+from motions import Planned, planned_scene
 from scipy.spatial import cKDTree
 from shipped import ROBOTS, shipped, with_keys
 
 import cellcolor
 from cellcolor.arrays import Array
-from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import prepare
 from cellcolor.motion.limits import motion_of
@@ -24,8 +23,6 @@ from cellcolor.tool_paths.refused import Codes
 from cellcolor.trajectory_checker.check import check_trajectory
 
 pytestmark = pytest.mark.second
-
-NAMES = ("wok", "half_pipe", "square", "hemisphere_flat", "hemisphere_tilted", "wok_obstacle")
 
 
 @pytest.fixture(scope="module", params=["half_pipe", "wok_obstacle"])
@@ -72,58 +69,6 @@ def test_in_contact_the_tip_is_on_the_tool_path(motion: Planned) -> None:
         assert away.max() < 0.6e-3
 
 
-def test_samples_are_a_millimeter_and_a_degree_apart_at_most(motion: Planned) -> None:
-    trajectory = motion.plan.trajectory
-    steps = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1)
-    cosines = (trajectory.normals[:-1] * trajectory.normals[1:]).sum(axis=1)
-    assert steps.max() <= 1e-3 + 1e-9
-    assert np.rad2deg(np.arccos(np.clip(cosines, -1, 1))).max() <= 1 + 1e-6
-
-
-def test_every_sample_in_contact_is_valid_in_the_color_of_its_segment(motion: Planned) -> None:
-    trajectory = motion.plan.trajectory
-    verdicts = motion.prepared.judge(trajectory.joints[trajectory.contact])
-    assert (verdicts.reasons == VALID).all()
-    branch_of = motion.built.coloring.branch
-    for first, end in trajectory.strokes:
-        segment = trajectory.segment[first]
-        vertex = int(np.flatnonzero(motion.painted.segment_of == segment)[0])
-        color = motion.painted.plan.vertex_colors[vertex]
-        assert color is not None
-        branches = np.full(end - first, branch_of[color])
-        rows = slice(first, end)
-        found = motion.prepared.arm.follow(
-            trajectory.points[rows], -trajectory.normals[rows], branches
-        )
-        off = np.remainder(trajectory.joints[rows] - found + np.pi, 2 * np.pi) - np.pi
-        assert np.abs(off).max() < 1e-9
-
-
-def test_joints_stay_in_their_limits_and_do_not_jump(motion: Planned) -> None:
-    trajectory, robot = motion.plan.trajectory, motion.prepared.robot
-    assert (trajectory.joints >= robot.lower).all()
-    assert (trajectory.joints <= robot.upper).all()
-    assert np.abs(np.diff(trajectory.joints, axis=0)).max() < 0.2
-
-
-def test_velocities_and_accelerations_are_kept_and_the_tool_is_no_faster_than_asked(
-    motion: Planned,
-) -> None:
-    trajectory, asked = motion.plan.trajectory, motion.prepared.setup.motion
-    assert asked is not None
-    steps = np.diff(trajectory.times)
-    assert steps.min() > 0
-    velocity = np.diff(trajectory.joints, axis=0) / steps[:, None]
-    assert (np.abs(velocity) <= motion.prepared.robot.model.velocityLimit * (1 + 1e-9)).all()
-    change = np.diff(velocity, axis=0) / ((steps[1:] + steps[:-1]) / 2)[:, None]
-    limit = np.array(asked.joint_accelerations_rad_per_s2)
-    assert (np.abs(change) <= limit * (1 + 1e-9)).all()
-    both = trajectory.contact[1:] & trajectory.contact[:-1]
-    speed = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1) / steps
-    assert speed[both].max() <= asked.speed_m_per_s * (1 + 1e-9)
-    assert np.median(speed[both]) > 0.95 * asked.speed_m_per_s
-
-
 @pytest.mark.parametrize("motion", ["wok_obstacle"], indirect=True)
 def test_the_tool_touches_at_the_approach_speed(motion: Planned) -> None:
     setup = motion.prepared.setup.varied(motion={"approach_speed_m_per_s": 0.004})
@@ -145,26 +90,6 @@ def test_lift_offs_are_the_proved_minimum_and_all_transfers_are_planned(motion: 
     assert trajectory.lift_offs == motion.lift_offs
     assert trajectory.extra_lift_offs == ()
     assert trajectory.unplanned == ()
-
-
-def test_the_arm_begins_and_ends_at_home(motion: Planned) -> None:
-    trajectory, asked = motion.plan.trajectory, motion.prepared.setup.motion
-    assert asked is not None
-    for sample in (0, -1):
-        assert trajectory.joints[sample] == pytest.approx(asked.home_rad)
-        assert not trajectory.contact[sample]
-        assert trajectory.segment[sample] == -1
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
-def test_all_scenes_have_no_more_lift_offs_than_were_proved(name: str) -> None:
-    motion = planned(name, 1000)
-    trajectory = motion.plan.trajectory
-    assert trajectory.lift_offs == motion.lift_offs
-    assert trajectory.extra_lift_offs == trajectory.unplanned == ()
-    verdicts = motion.prepared.judge(trajectory.joints[trajectory.contact])
-    assert (verdicts.reasons == VALID).all()
 
 
 @pytest.mark.parametrize("motion", ["wok_obstacle"], indirect=True)
@@ -228,15 +153,6 @@ def test_an_arm_of_continuous_joints_without_masses_and_velocities() -> None:
     planned = cellcolor.plan(square.with_setup(setup))
     assert planned.verdict.valid
     assert re.search(r'"lower":\s*\[null', planned.page().decode())  # JSON knows no infinity
-
-
-@pytest.mark.slow
-def test_a_mesh_that_is_much_coarser_than_the_spacing_is_covered_as_far_as_can_be() -> None:
-    """A dome of some 12 triangles: at every corner between two of them the tool's body hits it."""
-    planned = cellcolor.plan(shipped("wok", 12), spacing_m=0.03)
-    assert planned.verdict.valid
-    covered = planned.verdict.covered
-    assert covered is not None and covered.closely_covered_share > 0.9
 
 
 def test_where_no_path_can_be_followed_it_says_why(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -40,14 +40,6 @@ def test_times_keep_velocities_and_accelerations(seed: int, count: int) -> None:
     assert (np.abs(change) <= speeds.accelerations * (1 + 1e-9)).all()
 
 
-def test_a_straight_way_is_passed_at_the_speed_that_was_asked_for() -> None:
-    joints = np.linspace(0.0, 1.0, 1001)[:, None]
-    points = np.column_stack([joints[:, 0], np.zeros((1001, 2))])
-    times = timed(joints, Speeds(np.array([3.0]), np.array([8.0])), points, 0.05)
-    # 20 s, and 0.05 / 8 s more for speeding up and for slowing down, half of each lost.
-    assert times[-1] == pytest.approx(20 + 0.05 / 8, rel=2e-3)
-
-
 def test_many_sharp_bends_slow_down_only_what_is_beside_them() -> None:
     """Between them the tool is as fast as was asked for: nothing is stretched as a whole."""
     rng = np.random.default_rng(1)
@@ -119,12 +111,6 @@ def faults(joints: Array, times: Array, speeds: Speeds) -> set[FaultKind]:
     joints = joints[[0, *range(len(joints)), -1]]
     times = np.concatenate([[0.0], 1.0 + times, [2.0 + times[-1]]])
     return faults_of(driven(times, joints), speeds.velocities, speeds.accelerations)
-
-
-def test_a_long_way_without_samples_has_no_fault_of_its_own() -> None:
-    """Such as a move that is not planned; the judge lets an arm bow a little off a line."""
-    ends, speeds = np.array([[0.0, 0.0], [4.0, -1.0]]), Speeds(np.full(2, 3.0), np.full(2, 8.0))
-    assert not faults(ends, timed(ends, speeds), speeds)
 
 
 @examples(30)

@@ -14,7 +14,7 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.build import BuildResult, build_surface
 from cellcolor.motion.limits import motion_of, speeds_of
 from cellcolor.motion.strokes import Stroke
-from cellcolor.motion.transfers import Transfers, _directions
+from cellcolor.motion.transfers import Transfers
 from examples import examples
 
 
@@ -55,11 +55,3 @@ def test_a_retreat_leaves_the_surface(square: BuildResult, tilt: float, turn: fl
     tips = forward(square.prepared.robot, way).tip
     gone = np.linalg.norm(tips - tips[0], axis=1)
     assert ((tips - tips[0])[gone > 0.003] @ normal > 0.001).all()
-
-
-def test_a_tilted_retreat_is_taken_where_it_leaves_the_surface(square: BuildResult) -> None:
-    planner, own = in_the_middle(square)
-    normal = own.normals[0]
-    tilted = list(_directions(normal))[1:]
-    ways = [planner._off(own.joints[0], normal, way, own.branch) for way in tilted]
-    assert all(len(way) > 10 for way in ways)

@@ -2,25 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any
-
 import networkx as nx
 import numpy as np
 import pytest
 from motions import Planned, planned_scene, ring_scene
 
-from cellcolor.deadline import NEVER
 from cellcolor.frontend.arm.joint_space import JointSpace
-from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.motion.following import follow, joint_space, sampled
-from cellcolor.motion.segment import _refuse_what_is_beyond
-from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.windings import Steps, walls_of
-from cellcolor.tool_paths.cover import cover
 from cellcolor.tool_paths.measures import in_all
-from cellcolor.tool_paths.region import Segments
 
 pytestmark = pytest.mark.second
 
@@ -29,27 +18,6 @@ pytestmark = pytest.mark.second
 def ring() -> Planned:
     """A motion over the ring."""
     return planned_scene(ring_scene(np.deg2rad(200)))
-
-
-def test_a_path_without_walls_overruns_the_first_joint(ring: Planned) -> None:
-    motion = ring.prepared.setup.motion
-    assert motion is not None
-    (color,) = {color for color in ring.painted.plan.vertex_colors if color is not None}
-    covered = cover(
-        Segments(
-            replace(ring.painted.surface, cracks=()), ring.painted.segment_of, [color], ring.normals
-        ),
-        spacing_m=motion.spacing_m,
-        tool_radius_m=motion.tool_radius_m,
-    )
-    (path,) = covered.paths.paths
-    branch = ring.built.color_branch[color]
-    followed = follow(ring.prepared, sampled(path), branch)
-    assert followed.good
-    assert not joint_space(ring.prepared).fits(followed.joints)
-    turned = np.ptp(followed.joints, axis=0)
-    assert turned[0] > np.deg2rad(400)
-    assert (turned[1:] < np.pi).all()
 
 
 def test_the_chosen_path_stays_in_the_limits_without_a_lift_off(ring: Planned) -> None:
@@ -76,23 +44,11 @@ def test_cracks_of_the_color_open_the_ring_and_do_not_part_it(ring: Planned) -> 
         assert np.abs((np.remainder(steps + np.pi, 2 * np.pi) - np.pi).sum()) < 1e-6
 
 
-@pytest.mark.slow
-def test_there_are_no_walls_where_the_limits_allow_the_path_as_it_is() -> None:
-    ring = planned_scene(ring_scene(np.deg2rad(20 * 360)))
-    assert ring.plan.walls == ()
-    assert ring.plan.trajectory.lift_offs == 0
-    assert np.ptp(ring.plan.trajectory.joints[:, 0]) > 2.2 * np.pi
-
-
-def around_the_base(wide: float) -> tuple[Steps, TriangleMesh]:
-    """The module's example, a fan of four triangles; rad of a vertex each way."""
-    around = np.deg2rad([0.0, 90.0, 180.0, 270.0])
-    places = np.column_stack([np.cos(around), np.sin(around), np.zeros(4)])
-    fan = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
-    mesh = TriangleMesh(np.vstack([places, np.zeros(3)]), fan)
+def around_the_base() -> Steps:
+    """The module's example."""
     ends = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
     angles, turns = np.deg2rad([[0.0], [90.0], [180.0], [-90.0]]), np.array([[0], [0], [1], [0]])
-    return Steps(np.arange(4), np.ones(4), angles - wide, angles + wide, ends, turns), mesh
+    return Steps(np.arange(4), angles, ends, turns)
 
 
 def turning_by(degrees: float) -> JointSpace:
@@ -101,34 +57,16 @@ def turning_by(degrees: float) -> JointSpace:
     return JointSpace.of(np.zeros(1, dtype=bool), -limits, limits, 1.0)
 
 
-@pytest.mark.parametrize(
-    ("limit", "walls", "joint"),
-    [
-        (200, {(2, 3)}, None),  # from 180 degrees the joint would go on to 270
-        (100, {(1, 2), (2, 3)}, 0),  # 180 degrees is out of reach
-    ],
-)
-def test_four_vertices_around_the_base(
-    limit: float, walls: set[tuple[int, int]], joint: int | None
-) -> None:
-    steps, mesh = around_the_base(np.deg2rad(10))
-    found, full = walls_of(steps, mesh, turning_by(limit), NEVER)
-    assert set(found) == walls
-    assert full == joint
+def test_four_vertices_around_the_base() -> None:
+    """From 180 degrees the joint would go on to 270."""
+    assert walls_of(around_the_base(), turning_by(200)) == ([(2, 3)], None)
 
 
-def test_the_few_samples_beyond_the_limits_are_kept_off() -> None:
-    """A joint that turns to 201 degrees where 200 are allowed, in the last of 300 samples."""
-    points = np.column_stack([np.arange(300.0), np.zeros(300), np.zeros(300)])
-    turned = np.deg2rad(np.append(np.linspace(-199.0, 199.0, 299), 201.0))[:, None]
-    stroke = Stroke(0, 0, points, points, turned)
-    samples = SimpleNamespace(points=points, faces=np.arange(300))
-    courses = [SimpleNamespace(samples=samples)]
-    refused: list[tuple[int, list[float], str]] = []
-    refusals = SimpleNamespace(add=lambda face, at, why: refused.append((face, at.tolist(), why)))
-    arguments: Any = (courses, [stroke], turning_by(200), refusals)
-    assert _refuse_what_is_beyond(*arguments)
-    assert refused == [(299, [299.0, 0.0, 0.0], "joint limits")]
-    # Where a tenth is beyond, that is no exception, and the stroke is cut.
-    arguments = (courses, [stroke], turning_by(180), refusals)
-    assert not _refuse_what_is_beyond(*arguments)
+def test_a_joint_that_parts_a_segment_is_named() -> None:
+    """Two ways from C to D: one of them is in a window, or neither."""
+    steps = around_the_base()
+    line = steps._replace(ends=np.array([[2, 3], [2, 3]]), turns=np.array([[1], [0]]))
+    walls, joint = walls_of(line, turning_by(200))
+    assert (walls, joint) == ([(2, 3)], None)
+    turned = line._replace(turns=np.array([[2], [3]]))
+    assert walls_of(turned, turning_by(200)) == ([(2, 3)], 0)

@@ -44,14 +44,6 @@ def test_faults_and_valid_plans(
     assert out.count("not caught: ") == 3 and out.count("not as it has to be") == 3
 
 
-def test_the_pool_has_unreachable_points_cracks_handles_and_several_parts() -> None:
-    pool = [surface for surface, _ in oracle.surfaces()]
-    assert len(pool) == 64 and len({surface.sha256 for surface in pool}) == 64
-    assert any(surface.cracks for surface in pool)
-    assert any(not all(surface.vertex_colors) for surface in pool)
-    assert any(surface.given_up for surface in pool)
-
-
 def test_the_readme_has_what_greedy_pays() -> None:
     """And what the other columns are in one row."""
     readme = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -7,14 +7,11 @@ import pytest
 from library import INSTANCES
 from meshes import drawn
 from planners import (
-    configurations_of,
     largest_set_first,
     nearest_along_raster,
-    random_branches,
 )
 
 import cellcolor
-from cellcolor.data.candidate_table import CandidateTable
 from cellcolor.data.surface import LabelledSurface
 
 RED, BLUE = 0, 1
@@ -42,23 +39,6 @@ def test_figure_1_greedy_pays_a_lift_off() -> None:
     assert judge.judge(painted).lift_offs == 1 == judge.bounds.lower - 1
 
 
-def test_a_crack_ends_a_set() -> None:
-    """Red reaches all six vertices, but four at once at most; blue reaches five at once."""
-    surface = drawn("RPP PPP", LABELS, [(0, 1, RED), (1, 3, RED), (3, 4, RED)])
-    assert largest_set_first(surface) == [RED] + [BLUE] * 5
-
-
-def test_majorities_mend_what_was_drawn() -> None:
-    """Where both colors reach everything, no vertex is left with most neighbors in the other."""
-    surface = drawn(" ".join(["P" * 8] * 8), LABELS)
-    colors = random_branches(surface, np.random.default_rng(0))
-    assert set(colors) == {RED, BLUE}
-    for vertex, color in enumerate(colors):
-        near = {b for a, b in surface.left_of if a == vertex}
-        near |= {a for a, b in surface.left_of if b == vertex}
-        assert 2 * sum(colors[other] == color for other in near) >= len(near)
-
-
 @pytest.mark.parametrize(("angle", "before"), [(0.0, 2), (np.pi / 2, 4)])
 def test_the_raster_goes_on_in_the_branch_that_is_nearest(angle: float, before: int) -> None:
     """Red jumps by 3 rad in the middle column; blue is 0.5 rad away there, and full circles.
@@ -74,16 +54,3 @@ def test_the_raster_goes_on_in_the_branch_that_is_nearest(angle: float, before: 
     assert colors.count(RED) == before and colors.count(BLUE) == 10 - before
     columns = {vertex % 5 for vertex, color in enumerate(colors) if color == RED}
     assert columns in ({0, 1}, {3, 4})
-
-
-def test_configurations_of_a_scene_are_those_of_its_colors() -> None:
-    file = INSTANCES / "scenes" / "wok.surface.json"
-    surface = LabelledSurface.read(file)
-    table = CandidateTable.beside(surface, file)
-    found = configurations_of(surface, table)
-    for vertex in range(0, len(surface.vertices), 97):
-        there = np.flatnonzero(np.isfinite(found[vertex]).all(axis=1)).tolist()
-        assert tuple(there) == surface.vertex_colors[vertex]
-        for color in there:
-            (branch,) = np.flatnonzero(table.node_color[vertex] == color)
-            assert np.array_equal(found[vertex, color], table.configurations[vertex, branch])

@@ -18,7 +18,7 @@ from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import CellcolorError
-from cellcolor.lab.families.voronoi import voronoi
+from cellcolor.lab.families.surfaces import voronoi
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import paint
 from examples import examples
@@ -74,7 +74,7 @@ def test_the_oracle_says_where_a_plan_without_area_can_be_beaten(
 
 
 @pytest.mark.parametrize("pattern", ["contour", "back-and-forth"])
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", [*range(5), pytest.param(5, marks=pytest.mark.second), 6, 7])
 def test_tool_paths_on_coinciding_vertices_end_in_paths_or_in_a_sentence(
     pattern: str, seed: int
 ) -> None:

@@ -11,14 +11,12 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from painted import assert_whole, random_solution
 
-import cellcolor
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
-from cellcolor.lab.families.blobs import blobs
 from cellcolor.lab.families.meshes import grid_faces
-from cellcolor.lab.families.voronoi import voronoi
+from cellcolor.lab.families.surfaces import voronoi
 from cellcolor.painting.moving import border_length, move_borders
 from cellcolor.painting.paint import Painted, paint
 from examples import examples
@@ -143,9 +141,3 @@ def test_a_cost_is_finite_and_given_for_each_vertex_and_color() -> None:
     for cost in (np.zeros((16, 3)), np.zeros(16), np.full((16, 2), np.nan)):
         with pytest.raises(InputError, match=r"cost: needs a finite number for each of \(16, 2\)"):
             move_borders(drawn, cost=cost)
-
-
-def test_painting_from_outside_moves_borders() -> None:
-    surface = blobs(4)
-    painted = cellcolor.paint(surface, cellcolor.solve(surface, search_space="surface"))
-    assert painted.borders.after.length_m < painted.borders.before.length_m

@@ -9,7 +9,7 @@ from relabelled import isomorphic
 
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.decomposition import decompose
-from cellcolor.lab.families.voronoi import voronoi
+from cellcolor.lab.families.surfaces import voronoi
 from cellcolor.painting.refined import interpolated, unrefined
 from examples import examples
 
@@ -51,21 +51,6 @@ def test_one_edge_between_two_cells_with_a_crack() -> None:
     # 0-2 is 0-5-2 now: vertex 5 stands for 0, so that the crack is between 5 and 2. Of the first
     # face a square 4-1-2-5 is left, parted between 2 and 4: that stands for 2-0 as well.
     assert finer.cracks == (Crack(2, 4, (0,)), Crack(2, 5, (0,)))
-
-
-def test_unreachable_and_given_up_vertices_are_copied_as_such() -> None:
-    triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
-    surface = LabelledSurface(
-        "triangle", ("a",), triangle, [[0, 1, 2]], ((), (), (0,)), given_up=(1,)
-    )
-    finer = unrefined(surface).halved(np.array([False, True, False])).surface()
-    assert finer.vertex_colors == ((), (), (0,), (), ())
-    assert finer.given_up == (1, 3, 4)
-
-
-def test_without_marks_it_is_the_surface_itself() -> None:
-    surface = voronoi(1, "disc", size=8, regions=5, colors=2)
-    assert unrefined(surface).surface() is surface
 
 
 def test_values_of_vertices_reach_the_new_ones() -> None:

@@ -11,7 +11,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition.borders import ClosedMesh
 from cellcolor.lab.families.meshes import grid_faces
-from cellcolor.painting.trees import TooNarrow, Trees
+from cellcolor.painting.trees import Trees
 
 
 def grid(size: int) -> ClosedMesh:
@@ -42,40 +42,6 @@ def connected(size: int, found: dict[int, int], number: int) -> bool:
     return reached == own
 
 
-def test_nested_pairs_go_round_each_other() -> None:
-    # On the lower row of a 7 by 7 grid: 1 and 5 round 2 and 4 round 3.
-    found = trees(7, [[1, 5], [2, 4], [3]])
-    assert {found[v] for v in (1, 5)} == {0}
-    assert {found[v] for v in (2, 4)} == {1}
-    assert found[3] == 2
-    assert all(connected(7, found, number) for number in range(3))
-
-
-def test_what_crosses_is_refused() -> None:
-    # Corners of the square crosswise: no two disjoint trees connect them.
-    with pytest.raises(TooNarrow):
-        trees(7, [[0, 48], [6, 42]])
-
-
-def test_too_few_rows_are_refused() -> None:
-    # Three rows hold two nested trees over a middle one, two rows do not.
-    found = grown(range(21), _strip(3), [[1, 5], [2, 4], [3]])
-    assert len(set(found.values())) == 3
-    with pytest.raises(TooNarrow):
-        grown(range(14), _strip(2), [[1, 5], [2, 4], [3]])
-
-
-def _strip(rows: int) -> ClosedMesh:
-    places = [[x, y, 0.0] for y in range(rows) for x in range(7)]
-    vertices, faces = np.array(places), np.array(grid_faces(rows, 7))
-    return ClosedMesh(LabelledSurface("strip", ("a",), vertices, faces, ((0,),) * len(places)))
-
-
-def test_one_vertex_for_two_is_refused() -> None:
-    with pytest.raises(TooNarrow):
-        trees(7, [[1, 5], [5, 6]])
-
-
 def without(size: int, low: int, high: int) -> list[int]:
     """The vertices of a square grid with a square hole, both ends of its rows included."""
     hole = {(x, y) for x in range(low, high + 1) for y in range(low, high + 1)}
@@ -103,36 +69,6 @@ def test_ways_to_a_hole_leave_each_other_room(
     for number, own in enumerate(terminals):
         assert {found[v] for v in own} == {number}
         assert connected(size, found, number)
-
-
-def test_a_tree_goes_round_the_free_end_of_a_crack() -> None:
-    # A crack from the lower border between the columns 2 and 3 of a 7 by 7 grid, up to row 4.
-    mesh = grid(7)
-    around: dict[int, list[int]] = {}
-    for a, b in mesh.third:
-        around.setdefault(a, []).append(b)
-
-    def cracked(a: int, b: int) -> bool:
-        sides = {a % 7, b % 7} == {2, 3}
-        return max(a, b) < 49 and sides and max(a // 7, b // 7) <= 4
-
-    found = Trees(range(49), around, mesh.third, cracked, [[2, 3], [1, 5], [0]]).grown()
-    assert {found[v] for v in (2, 3)} == {0} and {found[v] for v in (1, 5)} == {1}
-    for number in (0, 1):
-        own = {vertex for vertex, tree in found.items() if tree == number}
-        reached = {min(own)}
-        pairs = {(a, b) for a, b in mesh.third if {a, b} <= own and not cracked(a, b)}
-        while more := {b for a, b in pairs if a in reached} - reached:
-            reached |= more
-        assert reached == own
-
-
-def test_a_way_across_leaves_the_other_one_room() -> None:
-    """Two sub-cells both reach a hole; the first must not shut the second one in."""
-    inside = [v for v in range(49) if v not in (16, 17, 18, 23, 24, 25, 30, 31, 32)]
-    # 8 and 9 are on the hole's lower left, 0 and 1 on the outer border.
-    found = grown(inside, grid(7), [[0, 15], [1, 9], [48, 40]])
-    assert all(connected(7, found, number) for number in range(3))
 
 
 def test_trees_end_with_their_deadline() -> None:

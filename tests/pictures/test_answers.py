@@ -14,8 +14,6 @@ from stand_in import stand_in
 import cellcolor
 from cellcolor.pictures.report_page.content import AnsweredScene, MotionReport
 from cellcolor.pictures.report_page.page import render_report
-from cellcolor.questions.answers import Explanation, RelaxedMinimum
-from cellcolor.questions.placements import PlacedMinimum, Placements
 
 NAME = "wok_obstacle"
 
@@ -73,20 +71,6 @@ def test_each_point_of_a_front_fills_what_it_covers(front: cellcolor.Front) -> N
         covered = areas[can_be & ~out].sum() / areas[can_be].sum()
         assert covered == pytest.approx(point.covered_share)
         assert not out[~can_be].any()
-
-
-def test_other_answers_say_what_commands_say() -> None:
-    base = RelaxedMinimum((), (), 3, 3, 1.0, 0.9, True)
-    free = RelaxedMinimum(("obstacle <1>",), ("obstacle[0]",), 2, 2, 1.0, 0.95, True)
-    found = Explanation("part", base, (free,), complete=False)
-    here = PlacedMinimum((0.5, 0, 0, 0, 0, 0), 3, 0.9, True, 200)
-    there = PlacedMinimum((0.6, 0, 0, 0, 0, 1.0), 1, 0.91, False, 200)
-    places = Placements("part", 0.9, here, (there,), (here, there, there))
-    text = page(found, places)
-    for title, answer in (("What costs a lift-off", found), ("Where the part could stand", places)):
-        (card,) = re.findall(rf"<h2>{title}</h2>(.*?)</section>", text, re.DOTALL)
-        said = [html.unescape(line) for line in re.findall(r"<p>(.*?)</p>", card)]
-        assert said == str(answer).splitlines()
 
 
 @pytest.mark.second

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import pytest
 from library import INSTANCES
 from numpy.typing import NDArray
 from pages import page_data, show, small_wok, solids
@@ -50,25 +49,6 @@ class TestScene:
 
         result = build_surface(scene)
         return result.branches[int(np.flatnonzero(result.reasons[0] == 0)[0])]
-
-    def test_nothing_is_read_again(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        """Scene, setup and robot are in the build: their files may have gone."""
-        from cellcolor.frontend import build_surface
-        from cellcolor.pictures.arm import draw_arm
-
-        result = build_surface(INSTANCES / "scenes" / "square.toml")
-        vertex, branch = (int(k) for k in np.argwhere(result.node_color >= 0)[0])
-
-        def read(*_: object, **__: object) -> None:
-            raise AssertionError("a file is read")
-
-        monkeypatch.setattr("builtins.open", read)
-        monkeypatch.setattr("io.open", read)
-        monkeypatch.setattr("pathlib.Path.open", read)
-        monkeypatch.setattr("pathlib.Path.read_text", read)
-        picture = draw_arm(result, vertex, branch)
-        assert "object" in {layer.name for layer in picture.layers}
-        assert [text.text for text in picture.texts] == [f"vertex {vertex}"]
 
     def test_arm(self, tmp_path: Path) -> None:
         """Every link where Pinocchio has it, on the surface of its shapes."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 
 class TestFaultyPart:
@@ -35,14 +34,3 @@ class TestFaultyPart:
     def beside(self, name: str) -> set[str]:
         """The fin has a border as well."""
         return {"holes and borders: 3 edges"} if name == "fin" else set()
-
-    def test_a_large_part_is_thinned(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        from dirty import DIRTY
-
-        import cellcolor
-        from cellcolor.pictures import mesh_picture
-
-        monkeypatch.setattr(mesh_picture, "_MOST", 100)
-        picture = mesh_picture.faulty_part(cellcolor.inspect(DIRTY["crossing"]()))
-        assert len(picture.layers[0].triangles) == 100
-        assert picture.notes == ("100 of 832 faces are drawn.", "Usable unchanged.")

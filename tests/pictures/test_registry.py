@@ -2,23 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
 from commands import run
 from pages import DRAWN, saved, side_file
 
-from cellcolor.errors import InputError
-from cellcolor.pictures import registry
-from cellcolor.pictures.registry import PICTURES, make_picture
-
 Capture = pytest.CaptureFixture[str]
-
-
-def test_unknown_names_list_what_there_is() -> None:
-    with pytest.raises(InputError, match="view: there is no 'pie'; there are arm, cells, color, "):
-        make_picture("pie")
 
 
 @pytest.mark.parametrize(
@@ -36,15 +26,6 @@ def test_a_name_draws_what_its_option_does(
     one, other = tmp_path / "one.svg", tmp_path / "other.svg"
     assert run("show", path, "-o", one, "--view", *view) == 0
     assert run("show", path, "-o", other, *option) == 0
-    assert one.read_bytes() == other.read_bytes()
-
-
-def test_segments_by_name(tmp_path: Path) -> None:
-    path, solution = saved(DRAWN, tmp_path), tmp_path / "solution.json"
-    assert run("solve", path, "-o", solution) == 0
-    one, other = tmp_path / "one.svg", tmp_path / "other.svg"
-    assert run("show", path, solution, "-o", one, "--view", "segments") == 0
-    assert run("show", path, solution, "-o", other) == 0
     assert one.read_bytes() == other.read_bytes()
 
 
@@ -66,12 +47,3 @@ def test_usage(arguments: list[str], message: str, tmp_path: Path, capsys: Captu
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("cellcolor show: ") and message in line
     assert not (tmp_path / "x.svg").exists()
-
-
-def test_every_picture_declares_parts_that_there_are() -> None:
-    parts = set(re.findall(r"^``(\w+)``  ", registry.__doc__ or "", re.MULTILINE))
-    assert len(parts) == 12
-    for name in PICTURES:
-        picture = make_picture(name)
-        assert set(picture.needs + picture.takes) <= parts
-        assert not set(picture.needs) & set(picture.takes)

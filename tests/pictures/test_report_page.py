@@ -215,28 +215,6 @@ def test_faults_are_found_by_a_click_and_the_space_bar_plays(tmp_path: Path) -> 
 
 
 @pytest.mark.second
-def test_the_arm_is_drawn_and_moves(page_file: Path) -> None:
-    """Pictures of two moments differ, and one without the arm differs from both."""
-    with opened(page_file, DESKTOP) as (page, faults):
-        view, seen = page.locator("#view"), []
-        seen.append(view.screenshot())
-        page.evaluate(
-            "() => { const s = document.getElementById('time'); s.value = 0.5 * s.max;"
-            " s.dispatchEvent(new Event('input')); }"
-        )
-        page.wait_for_timeout(300)
-        seen.append(view.screenshot())
-        page.locator("#legend button", has_text="arm").click()
-        page.wait_for_timeout(300)
-        seen.append(view.screenshot())
-        assert len(set(seen)) == 3
-        assert page.locator("#overlay .dot").count() == len(stand_in().trajectory.left_out) > 0
-        page.locator("#legend button", has_text="not covered").click()
-        page.locator("#overlay .dot").wait_for(state="hidden")
-        assert faults == []
-
-
-@pytest.mark.second
 def test_a_joint_that_slides_is_drawn_sliding(tmp_path: Path) -> None:
     """The tip that the page computes in a few configurations is that of forward kinematics."""
     made = driven_scara()
@@ -319,19 +297,6 @@ def test_frames_keep_the_ends_of_strokes(count: int, most: int, rng: object) -> 
     wanted |= {end for first, after in trajectory.strokes for end in (first, after - 1)}
     assert wanted <= set(frames.tolist())
     assert len(frames) <= max(most, 0) + len(wanted)
-
-
-def test_frames_keep_corners_of_the_path() -> None:
-    """A long straight way with one corner, at a sample that an even choice would leave out."""
-    count = 2001
-    points = np.zeros((count, 3))
-    points[:, 0] = np.minimum(np.arange(count), 777)
-    points[:, 1] = np.maximum(np.arange(count) - 777, 0)
-    still = np.zeros((count, 2))
-    contact, rows = np.ones(count, dtype=bool), [0] * count
-    moved = Trajectory("any", ("a", "b"), np.arange(count), still, points, points, contact, rows)
-    frames = frames_of(moved, 20)
-    assert 777 in frames and len(frames) <= 22
 
 
 def test_badges_count_against_the_proof() -> None:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from library import PAPER
-from meshes import drawn, finer, octahedron
-from meshes import surface as labelled
-from pages import DRAWN, areas, page_data, saved, show, side_file, small_wok, unpacked
+from meshes import drawn
+from pages import DRAWN, areas, page_data, saved, show, side_file, unpacked
 
 import cellcolor
 from cellcolor.cli import main
@@ -20,8 +18,7 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose, decomposition_of
 from cellcolor.errors import InputError
-from cellcolor.pictures.mesh_picture import mesh_picture_parts
-from cellcolor.pictures.picture import ClassedMesh, Line, mixed, paints_of
+from cellcolor.pictures.picture import Line, paints_of
 from cellcolor.pictures.surface_pictures import draw_cells, draw_color, draw_plan, draw_segments
 from cellcolor.pictures.topological_graph import draw_graph
 
@@ -36,44 +33,10 @@ def holding(instance: Instance) -> dict[str, set[int]]:
     return found
 
 
-def classed_mesh(surface: LabelledSurface) -> ClassedMesh:
-    mesh = draw_cells(surface, decomposition_of(surface)).mesh
-    assert mesh is not None
-    return mesh
-
-
-def areas_of(mesh: ClassedMesh) -> list[float]:
-    """The area of each class as it is cut for a picture."""
-    points, triangles, owner = mesh_picture_parts(mesh.points, mesh.faces, mesh.labels)
-    corners = points[triangles]
-    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    sizes = np.linalg.norm(doubled, axis=1) / 2
-    return np.bincount(owner, sizes, minlength=len(mesh.classes)).tolist()
-
-
 class TestCells:
     def test_every_vertex_lies_in_the_area_of_its_cell(self, tmp_path: Path) -> None:
         show(saved(DRAWN, tmp_path), "-o", tmp_path / "x.html")
         assert areas(tmp_path / "x.html") == holding(decompose(DRAWN, "drawn.surface.json"))
-
-    def test_areas_are_those_of_the_cells(self) -> None:
-        """The decomposition sums the dual areas on its own."""
-        mesh = classed_mesh(DRAWN)
-        found = areas_of(mesh)
-        names = [one.name for one in mesh.classes]
-        for cell in decompose(DRAWN).cells:
-            assert found[cell.id] == pytest.approx(cell.area)
-            colors = "{" + ", ".join(map(str, cell.colors)) + "}"
-            assert names[cell.id] == f"cell {cell.id} {colors}, {100 * found[cell.id] / 20:.1f} %"
-        assert sum(found) == pytest.approx(20.0)
-
-    def test_triangles_face_outward(self) -> None:
-        sphere = finer(*finer(*octahedron()))
-        mesh = classed_mesh(labelled(*sphere, [[int(z > 0.1)] for _, _, z in sphere[0].tolist()]))
-        points, triangles, _ = mesh_picture_parts(mesh.points, mesh.faces, mesh.labels)
-        corners = points[triangles]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        assert (np.einsum("ij,ij->i", normals, corners.mean(axis=1)) > 0).all()
 
     def test_borders_and_cracks(self, tmp_path: Path) -> None:
         """Each mesh edge that is crossed is marked on each of its triangles."""
@@ -86,13 +49,6 @@ class TestCells:
             for a, b, line in zip(face, [*face[1:], face[0]], own, strict=True):
                 crossed = Line.BORDER if cell[a] != cell[b] else Line.NONE
                 assert line == (Line.CRACK if (min(a, b), max(a, b)) in cracked else crossed)
-
-    def test_numbers_stand_on_their_cells(self) -> None:
-        mesh, texts = classed_mesh(DRAWN), draw_cells(DRAWN, decomposition_of(DRAWN)).texts
-        assert {text.text for text in texts} == {str(cell.id) for cell in decompose(DRAWN).cells}
-        for text in texts:
-            (vertex,) = np.flatnonzero((DRAWN.vertices == text.at).all(axis=1))
-            assert mesh.labels[vertex] == text.label == int(text.text)
 
     def test_an_instance_finds_its_surface(self, tmp_path: Path) -> None:
         folder = tmp_path / "sub"
@@ -127,13 +83,6 @@ def test_a_color_has_one_paint_in_every_picture() -> None:
     rims = {outline.rgb for outline in draw_graph(graph.instance).outlines}
     assert {paints[names[1]], paints[names[2]]} < rims
     assert len(set(paints_of(list(map(str, range(16)))).values())) == 16
-
-
-def test_where_several_colors_are_available_their_paints_are_mixed_and_paler() -> None:
-    assert mixed(["#204060"]) == "#204060"
-    # The mean is 30 50 70; half of a half of the way from there to FF.
-    assert mixed(["#204060", "#406080"]) == "#647C94"
-    assert mixed([]) == "#FFFFFF"
 
 
 def test_marked_segments_of_a_plan() -> None:
@@ -214,70 +163,6 @@ class TestSolution:
             subs = solution.cells[cells[vertex]].subcells
             assert segment in {sub.segment for sub in subs}
 
-    @pytest.mark.parametrize("name", ["split-cell", "figsimpleexample"])
-    def test_segments_with_a_part_of_a_divided_cell_are_whole(
-        self, name: str, tmp_path: Path
-    ) -> None:
-        """No segment is torn: flooded over mesh edges from one of its vertices."""
-        path = PAPER / f"{name}.surface.json"
-        surface = LabelledSurface.read(path)
-        file, solution = self.solved(path, tmp_path)
-        show(path, file, "-o", tmp_path / "x.html")
-        painted = self.segments(tmp_path / "x.html", surface)
-        for segment in range(solution.segments or 0):
-            own = {vertex for vertex, number in painted.items() if number == segment}
-            reached = {min(own)}
-            pairs = {(a, b) for a, b in surface.left_of if {a, b} <= own}
-            pairs |= {(b, a) for a, b in pairs}
-            while more := {b for a, b in pairs if a in reached} - reached:
-                reached |= more
-            assert reached == own
-        assert "One possible cut is drawn" in (tmp_path / "x.html").read_text()
-
-    def test_strands_share_their_edge(self, tmp_path: Path) -> None:
-        """Two corridors side by side cross the border between the two large cells."""
-        path = PAPER / "parallel-corridors.surface.json"
-        surface = LabelledSurface.read(path)
-        file, solution = self.solved(path, tmp_path, "--search-space", "surface")
-        show(path, file, "-o", tmp_path / "x.html")
-        painted = self.segments(tmp_path / "x.html", surface)
-        assert solution.cells is not None
-        assert solution.segments == 2
-        reference = decompose(surface, path.name).surface
-        assert reference is not None
-        cells = reference.vertex_cell
-        first, second = (cell.id for cell in solution.cells if len(cell.subcells) == 2)
-        crossing = [(a, b) for a, b in surface.left_of if (cells[a], cells[b]) == (first, second)]
-        assert {painted[a] for a, _ in crossing} == {0, 1} == {painted[b] for _, b in crossing}
-        # Where one corridor ends and the other begins a vertex may have a neighbor in each.
-        assert sum(painted[a] != painted[b] for a, b in crossing) <= 2
-
-    def test_a_graph_made_elsewhere_leaves_divided_cells_unpainted(self, tmp_path: Path) -> None:
-        """Where its edges lie on the mesh is not known."""
-        text = (PAPER / "split-cell.surface.json").read_text()
-        (tmp_path / "s.json").write_text(text)
-        surface = LabelledSurface.read(tmp_path / "s.json")
-        made = decompose(surface, "s.json")
-        shifted = replace(
-            made,
-            edges=tuple(replace(edge, id=edge.id + 100) for edge in made.edges),
-            cells=tuple(
-                replace(
-                    cell,
-                    loops=tuple(
-                        tuple(dart + (100 if dart > 0 else -100) for dart in loop)
-                        for loop in cell.loops
-                    ),
-                )
-                for cell in made.cells
-            ),
-        )
-        (tmp_path / "i.json").write_text(shifted.to_json())
-        file, _ = self.solved(tmp_path / "i.json", tmp_path)
-        show(tmp_path / "i.json", file, "-o", tmp_path / "x.html")
-        cut = areas(tmp_path / "x.html")["cut between segments"]
-        assert cut == {v for v, colors in enumerate(surface.vertex_colors) if len(colors) == 2}
-
 
 class TestReasons:
     def test_of_a_side_file(self, tmp_path: Path) -> None:
@@ -299,20 +184,3 @@ class TestReasons:
         codes = arrays["reasons"][:, 1]
         names = {"valid": 0, "torque": 2, "ground": 3}
         assert found == {n: set(np.flatnonzero(codes == c).tolist()) for n, c in names.items()}
-
-    def test_of_a_scene(self, tmp_path: Path) -> None:
-        from reasons import Reason
-
-        from cellcolor.frontend import build_surface
-
-        scene = small_wok(tmp_path)
-        show(scene, "--view", "reasons", "--branch", "0", "-o", tmp_path / "x.html")
-        result = build_surface(scene)
-        found = areas(tmp_path / "x.html")
-        taken = result.node_color[:, 0] < 0
-        for reason in Reason:
-            if reason != Reason.VALID:
-                own = set(np.flatnonzero(result.reasons[:, 0] == reason).tolist())
-                assert own == found.get(reason.text, set())
-        valid = np.flatnonzero((result.reasons[:, 0] == Reason.VALID) & ~taken)
-        assert found["valid"] == set(valid.tolist())

@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 from library import PAPER
 from pages import (
-    DRAWN,
-    saved,
     show,
 )
 
@@ -58,11 +56,3 @@ class TestGraph:
         page = (tmp_path / "x.html").read_text(encoding="utf-8")
         assert page.count("<svg") == 1 and "class View" not in page
         assert "0: &lt;b&gt;</span>" in page and "<b>" not in page
-
-    def test_a_surface_and_a_graph_without_cells(self, tmp_path: Path) -> None:
-        show(saved(DRAWN, tmp_path), "--view", "graph", "-o", tmp_path / "x.svg")
-        assert "drawn: 4 cells" in (tmp_path / "x.svg").read_text()
-        empty = tmp_path / "empty.json"
-        empty.write_text(Instance("empty", (), (), ()).to_json())
-        show(empty, "--view", "graph", "-o", tmp_path / "empty.png")
-        assert (tmp_path / "empty.png").stat().st_size > 0

@@ -13,7 +13,7 @@ from pages import DESKTOP, PHONE, opened
 from PIL import Image
 
 import cellcolor
-from cellcolor.pictures.picture import INK, paints_of
+from cellcolor.pictures.picture import paints_of
 
 pytestmark = pytest.mark.second
 
@@ -119,31 +119,4 @@ def test_marks_of_a_verdict_are_drawn(pages: dict[str, Path]) -> None:
     with opened(pages["verdict"], DESKTOP) as (page, faults):
         assert page.locator("#overlay .mark:visible").count() == 2
         assert near(pixels(page), "#AA0077") > 500
-        assert faults == []
-
-
-def test_it_is_dark_where_the_reader_wants_it(pages: dict[str, Path]) -> None:
-    """Fills stay; the background is dark and texts are light."""
-    with opened(pages["segments"], DESKTOP) as (page, faults):
-        light = pixels(page)
-        page.emulate_media(color_scheme="dark")
-        dark = pixels(page)
-        assert light[5, 5].min() > 240 and dark[5, 5].max() < 70
-        for paint in paints_of(SURFACE.colors).values():
-            assert near(dark, paint) == pytest.approx(near(light, paint), rel=0.02)
-        ink = page.locator("h1").evaluate("title => getComputedStyle(title).color")
-        assert min(map(int, ink[4:-1].split(","))) > 200
-        assert near(light, INK) > 0 and faults == []
-
-
-def test_a_window_that_gets_narrow_cuts_nothing_off(pages: dict[str, Path]) -> None:
-    """Until somebody turns the part, which is wider than high here."""
-    with opened(pages["segments"], DESKTOP) as (page, faults):
-        for size in (DESKTOP, PHONE):
-            page.set_viewport_size({"width": size[0], "height": size[1]})
-            shown = pixels(page)
-            empty = shown[shown.shape[0] // 2, 2]  # beside the part
-            rows = slice(60, -60)  # between the buttons
-            for column in (2, 5, -6, -3):
-                assert (abs(shown[rows, column] - empty).max(axis=1) < 20).all()
         assert faults == []

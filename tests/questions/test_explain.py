@@ -19,7 +19,7 @@ import cellcolor
 from cellcolor.deadline import NEVER
 from cellcolor.frontend import BuildResult, Scene, build_surface
 from cellcolor.frontend.build import StageClock, build_prepared
-from cellcolor.frontend.prepared import PreparedScene, prepare
+from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.reach import validity
 from cellcolor.frontend.relaxing import (
     TOOL_LENGTH,
@@ -29,7 +29,6 @@ from cellcolor.frontend.relaxing import (
     relaxations_of,
     without,
 )
-from cellcolor.questions import explaining
 from cellcolor.questions.answers import Explanation, RelaxedMinimum
 from examples import examples
 
@@ -159,31 +158,6 @@ def test_each_row_is_that_of_the_scene_with_the_thing_changed(
     assert changing >= 3
 
 
-@pytest.mark.slow
-@examples(8)
-@given(
-    name=st.sampled_from(["wok_obstacle", "hemisphere_tilted"]),
-    chosen=st.sets(st.integers(0, 30), min_size=2),
-    wider=st.floats(0.01, 1.0),
-)
-def test_what_is_known_changes_nothing_of_what_is_found(
-    name: str, chosen: set[int], wider: float
-) -> None:
-    """Several things at a time, some of them a little: as if everything were asked anew."""
-    prepared = prepare(scene_of(name))
-    clock = StageClock(NEVER, None)
-    things = [one for one in relaxations_of(prepared) if one.reasons is not None]
-    some = [one for one in things if one.key in ("joint[wrist_1_joint].limit", "ground")]
-    things += [one.by(wider) for one in some]
-    what = list({things[i % len(things)].key: things[i % len(things)] for i in chosen}.values())
-    reasons = frozenset[str]().union(*(one.reasons or () for one in what))
-    relaxed = without(prepared, what)
-    found = built_asking_less(relaxed, build_prepared(prepared, clock), reasons, clock)
-    anew = build_prepared(relaxed, clock)
-    assert same_answers(found, anew)
-    assert np.array_equal(found.reasons, anew.reasons)
-
-
 @examples(5)
 @given(data=st.data(), wider=st.floats(0.01, 1.0))
 def test_what_is_known_of_a_freer_scene_changes_nothing_of_what_is_found(
@@ -287,24 +261,6 @@ def test_an_amount_saves_what_it_says_and_less_of_it_does_not(tilted: Explanatio
     assert row.segments is not None and row.segments < (tilted.base.segments or 0)
 
 
-def test_an_amount_is_asked_from_the_last_that_was_not_enough(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    asked: list[tuple[float, int]] = []
-
-    def noting(prepared: PreparedScene, before: BuildResult, *others: Any) -> BuildResult:
-        ground = prepared.ground
-        valid = int(before.verdicts.valid.sum())
-        asked.append((-np.inf if ground is None else ground.offset_m, valid))
-        return built_asking_less(prepared, before, *others)
-
-    monkeypatch.setattr(explaining, "built_asking_less", noting)
-    cellcolor.explain(shipped("hemisphere_tilted", 120))
-    as_it_is, whole = max(asked)[0], asked[0][1]
-    lowered = [valid for offset, valid in asked if -np.inf < offset < as_it_is]
-    assert lowered[0] == whole < lowered[-1]  # from the scene as it is, then from a freer one
-
-
 def test_where_one_is_not_enough_the_smallest_set_is_found() -> None:
     """An obstacle that stands there twice: neither of the two costs anything alone."""
     scene = shipped("wok_obstacle", 200)
@@ -317,19 +273,6 @@ def test_where_one_is_not_enough_the_smallest_set_is_found() -> None:
     both = [row for row in twice.sets if row.keys == ("obstacle[0]", "obstacle[1]")]
     assert [row.segments for row in both] == [lone.segments]
     assert all(len(row.relaxed) == 2 for row in twice.sets)
-
-
-def test_an_obstacle_farther_away() -> None:
-    scene = shipped("wok_obstacle", 200)
-    row = next(row for row in cellcolor.explain(scene).amounts if row.keys == ("obstacle[0]",))
-    (amount,) = re.findall(r"([\d.]+) mm farther", row.relaxed[0])
-    prepared = prepare(scene)
-    middle = np.average(prepared.surface.vertices, axis=0, weights=prepared.surface.vertex_areas())
-    place = np.array(scene.obstacle[0].position_m)  # its own middle, as it is a cylinder
-    there = place + float(amount) / 1e3 * (place - middle) / np.linalg.norm(place - middle)
-    moved = scene.obstacle[0].model_copy(update={"position_m": tuple(there.tolist())})
-    found = cellcolor.solve(cellcolor.build(scene.varied(obstacle=(moved,)))).solution
-    assert found.segments == row.segments
 
 
 def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -352,33 +295,3 @@ def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[s
         assert said in capsys.readouterr().err
     assert run("explain", file, "--time-limit", "0.01") == 3
     assert "before the scene itself was solved" in capsys.readouterr().err
-
-
-PARTS = [file for file in (SCENES.parent / "parts").glob("*.toml") if "refused" not in file.stem]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "file", sorted([*SCENES.glob("*.toml"), *PARTS]), ids=lambda file: file.stem
-)
-def test_every_row_of_the_shipped_scenes_from_scratch(
-    file: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Each thing alone, each pair of links, and each set: number and area."""
-    scene = Scene.read(file)
-    found = cellcolor.explain(scene)
-    prepared = prepare(scene)
-    things = relaxations_of(prepared)
-    pairs = [part for one in things for part in one.parts]
-    named = {one.name: one for one in (*things, *pairs)}
-    assert {(one.name,) for one in things} <= {row.relaxed for row in found.alone}
-    for row in (*found.alone, *found.sets):
-        what = [named[name] for name in row.relaxed]
-        if any(one.key == "robot.tool_urdf" for one in what):
-            continue  # its tip needs other room from obstacles and the ground
-        surface = from_scratch(scene, what, monkeypatch).surface
-        solution = cellcolor.solve(surface).solution
-        assert (row.segments, row.proved_for_surface) == (solution.segments, True), what
-        colored = [bool(colors) for colors in surface.vertex_colors]
-        areas = surface.vertex_areas
-        assert row.surface_share == pytest.approx(areas[colored].sum() / areas.sum()), what

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from concurrent.futures import Future
+from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -18,19 +18,14 @@ import cellcolor
 from cellcolor.deadline import NEVER
 from cellcolor.frontend import Scene
 from cellcolor.frontend.parts.placement import Placement
-from cellcolor.lab.workers import Task, Workers
-from cellcolor.processes import Ended
 from cellcolor.questions.placements import (
-    VARIABLES,
     PlacedMinimum,
     Placements,
     Pose,
 )
 from cellcolor.questions.placing import (
-    around,
     coarse_scene,
     displaced,
-    distance,
     minima_at,
     spread,
 )
@@ -39,7 +34,6 @@ from examples import examples
 pytestmark = pytest.mark.second
 
 RANGES = {"x": (0.3, 0.6), "y": (-0.3, 0.1)}
-NUMBERS = st.floats(-2, 2, allow_nan=False)
 SHARES = st.integers(0, 1000).map(lambda mill: mill / 1000)
 
 
@@ -123,64 +117,10 @@ def test_bounds_lie_on_their_sides_of_what_a_whole_build_finds() -> None:
     assert tight  # else any number would do
 
 
-def test_bounds_change_nothing_but_the_number_of_whole_builds(
-    found: Placements, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    built: list[int] = []
-
-    def ask_whole(*given: Any) -> list[PlacedMinimum]:
-        built.append(len(given[1]))
-        return minima_at(*given[:6])
-
-    monkeypatch.setattr("cellcolor.questions.placing.minima_at", ask_whole)
-    without = place()
-    assert (without.here, without.best) == (found.here, found.best)
-    assert [row.pose for row in without.tried[:11]] == [row.pose for row in found.tried[:11]]
-    aside = [row for row in found.tried if row.at_least]
-    assert aside and all("at most" in str(row) and row.segments is None for row in aside)
-    assert f"{len(aside)} left aside by bounds" in str(found)
-
-
-def test_where_nothing_covers_enough_the_most_is_said() -> None:
-    found = place(cover=1.0, points=2, best=1)
-    most = max((found.here, *found.best), key=lambda row: row.covered_share)
-    assert 0.5 < most.covered_share < 1
-    share = str(found).partition("--cover ")[2].split()[0]
-    assert most.covered_share - 0.001 < float(share) <= most.covered_share
-    again = place(cover=float(share), points=2, best=1)
-    assert "no placement" not in str(again) or most.pose == again.here.pose
-
-
-def test_what_is_listed_is_in_the_ranges_although_the_scene_is_not() -> None:
-    """The part stands at x = 0.465 m."""
-    found = place(x=(0.3, 0.36), y=None, cover=0.5)
-    assert found.best
-    assert found.here.pose[0] == pytest.approx(0.465)
-    # The first one tried is the scene's own placement, on the coarse mesh.
-    assert all(0.3 <= row.pose[0] <= 0.36 for row in (*found.best, *found.tried[1:]))
-
-
 def test_nothing_is_listed_where_the_arm_does_not_reach(capsys: pytest.CaptureFixture[str]) -> None:
     options = ("--points", "2", "--vertices", "50", "--cover", "0.5")
     assert run("place", "wok_obstacle", "--x", "5,6", *options) == 3
     assert "no placement that was tried covers" in capsys.readouterr().out
-
-
-@pytest.mark.slow
-def test_two_processes_find_the_same(found: Placements) -> None:
-    other = place(jobs=2)
-    assert list(other) == list(found)
-
-
-def test_where_the_part_cannot_stand_the_row_says_why() -> None:
-    scene = shipped("wok", 60)
-    here: Pose = (*scene.placement.position_m, *scene.placement.rpy_rad)
-    within = (0.0, 0.0, -0.15, 0.0, 0.0, 0.0)  # its top in the base
-    rows = minima_at(scene, [within, here, within, here], np.inf, 1, 0)
-    assert [bool(row.refused) for row in rows] == [True, False, True, False]
-    assert "stands in the robot's" in rows[0].refused and rows[0] == rows[2]
-    assert rows[1] == rows[3] and rows[1].segments == by_hand(scene)[0]
-    assert rows[0].rank(0.0) > rows[1].rank(0.0) and rows[0].lift_offs is None
 
 
 def test_a_part_does_not_stand_in_the_ground_or_in_an_obstacle() -> None:
@@ -209,53 +149,13 @@ def test_where_the_scene_has_it_in_the_base_the_share_has_to_be_said() -> None:
     assert found.here.refused and found.best[0].covered_share >= 0.2
 
 
-class Losing(Workers):
-    """Workers that lose the first pieces of work, as a process that is killed does."""
-
-    slots = 2
-
-    def __init__(self, lost: int) -> None:
-        self.lost = lost
-
-    def submit(self, task: Task, /) -> Future[Ended]:
-        future: Future[Ended] = Future()
-        self.lost -= 1
-        if self.lost >= 0:
-            future.set_result(Ended("crashed", error="killed"))
-        else:
-            future.set_result(Ended("done", task.function(*task.arguments)))
-        return future
-
-    def __exit__(self, *_: object) -> None:
-        """Nothing is left to end."""
-
-
-@pytest.mark.slow
-def test_a_lost_process_loses_no_placement(found: Placements) -> None:
-    assert list(place(jobs=Losing(1))) == list(found)
-    with pytest.raises(cellcolor.CellcolorError, match="could not be tried: killed"):
-        place(jobs=Losing(10**6))
-
-
-def counted(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """How many placements are built whole from now on, in one process."""
-    asked: list[int] = []
-
-    def ask(scene: Scene, poses: Sequence[Pose], *others: Any) -> list[PlacedMinimum]:
-        asked.append(len(poses) if others[-1] is None else 0)  # bounds are computed again
-        return minima_at(scene, poses, *others)
-
-    monkeypatch.setattr("cellcolor.questions.placing.minima_at", ask)
-    return asked
-
-
 def test_how_far_a_placement_may_be_off(monkeypatch: pytest.MonkeyPatch) -> None:
     """Against the samples, each built and solved again, nearest first."""
     monkeypatch.setattr("cellcolor.questions.searching_places._BESIDE", 6)
     monkeypatch.setattr("cellcolor.questions.searching_places._TOGETHER", 4)
     found = place(points=2, best=1, leeway=0.2, cover=0.5)
     (row,) = found.best
-    assert row.leeway is not None and row.leeway.to_document() == row.to_document()["leeway"]
+    assert row.leeway is not None and asdict(row.leeway) == row.to_document()["leeway"]
     own = shipped("wok_obstacle", 80)
     holds, shares = 0.0, [row.covered_share]
     beside_it = displaced(own.covered().vertices, row.pose, 0.2, 6, 0)
@@ -302,32 +202,6 @@ def test_displacements_are_as_far_as_they_say(pose: Pose, up_to: float, count: i
         off = np.linalg.norm(there - start, axis=1).max()
         assert off == pytest.approx(said, abs=1e-9)
         assert off == pytest.approx(up_to * number / count, rel=1e-3)
-
-
-@examples(50)
-@given(
-    names=st.sets(st.sampled_from(VARIABLES), min_size=1),
-    start=st.tuples(*6 * [NUMBERS]),
-    low=NUMBERS,
-    width=st.floats(0.01, 2),
-    count=st.integers(1, 40),
-    share=st.floats(0.01, 1),
-    seed=st.integers(0, 100),
-)
-def test_points_stay_in_their_ranges(
-    names: set[str], start: Pose, low: float, width: float, count: int, share: float, seed: int
-) -> None:
-    ranges = dict.fromkeys(sorted(names), (low, low + width))
-    poses = spread(ranges, start, count, seed)
-    near = around(ranges, poses[0], share, count, seed)
-    assert len(poses) == len(near) == count and len(set(poses)) == count
-    for pose in (*poses, *near):
-        for name, value, before in zip(VARIABLES, pose, start, strict=True):
-            if name in ranges:
-                assert low - 1e-12 <= value <= low + width + 1e-12
-            else:
-                assert value == before
-    assert all(distance(ranges, pose, poses[0]) <= share / 2 + 1e-9 for pose in near)
 
 
 @examples(50)

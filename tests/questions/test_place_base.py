@@ -19,7 +19,6 @@ from examples import examples
 
 METRES = st.floats(-2, 2)
 ANGLES = st.floats(-3.1, 3.1)
-NO_POSE = (0.0,) * 6
 
 
 def taken_along(thing: Placement, base: Placement) -> dict[str, Any]:
@@ -59,8 +58,8 @@ def test_the_world_stays_where_it_is(
         assert at.placed(after.placed(points)) == pytest.approx(before.placed(points), abs=1e-9)
     assert scene.ground is not None and seen.ground is not None
     plane, there = scene.ground.half_space, seen.ground.half_space
-    heights = plane.along(at.placed(points)) - plane.offset_m
-    assert there.along(points) - there.offset_m == pytest.approx(heights, abs=1e-9)
+    heights = plane.heights(at.placed(points))
+    assert there.heights(points) == pytest.approx(heights, abs=1e-9)
 
 
 def test_a_world_and_a_base_that_move_together_change_nothing() -> None:
@@ -79,19 +78,6 @@ def test_a_world_and_a_base_that_move_together_change_nothing() -> None:
     assert first == again and first.pose == pose
     assert (first.segments, first.vertices) == (there.segments, there.vertices)
     assert first.covered_share == pytest.approx(there.covered_share)
-
-
-def test_without_obstacles_the_base_goes_where_the_part_comes_from() -> None:
-    own = shipped("wok", 60)
-    x, y, *rest = *own.placement.position_m, *own.placement.rpy_rad
-    poses = [(0.05, -0.1, *NO_POSE[2:]), NO_POSE]
-    bases = minima_at(own, poses, np.inf, 1, 0, base=True)
-    parts = minima_at(own, [(x - 0.05, y + 0.1, *rest), (x, y, *rest)], np.inf, 1, 0)
-    assert [(row.segments, row.vertices) for row in bases] == [
-        (row.segments, row.vertices) for row in parts
-    ]
-    for base, part in zip(bases, parts, strict=True):
-        assert base.covered_share == pytest.approx(part.covered_share)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
 from itertools import combinations
 from math import pi
 from pathlib import Path
@@ -11,14 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commands import run
-from exhaustive_minima import front_by_subsets, minimum
+from exhaustive_minima import minimum
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from shipped import shipped
 
 import cellcolor
 from cellcolor.cli.options import Stops
-from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import OutOfTime
 from cellcolor.decomposition import decomposition_of
@@ -75,7 +73,7 @@ def drawn_at_random(seed: int, count: int) -> list[LabelledSurface]:
     return found
 
 
-@examples(12)
+@examples(8)
 @given(seed=st.integers(0, 10**6), count=st.integers(1, 4), listed=st.booleans())
 def test_no_choice_has_fewer_set_ups_or_fewer_segments(seed: int, count: int, listed: bool) -> None:
     """Whether each set of set-ups has a model of its own or all of them have one."""
@@ -95,55 +93,6 @@ def test_no_choice_has_fewer_set_ups_or_fewer_segments(seed: int, count: int, li
     assert choice.solution.segments == least
     assert choice.at_least_segments <= least
     assert choice.proved == (choice.at_least_segments == least)
-
-
-@pytest.mark.second
-@examples(10)
-@given(seed=st.integers(0, 10**6), count=st.integers(1, 3), share=st.floats(0.3, 1.0))
-def test_a_share_is_covered_with_no_fewer_set_ups(seed: int, count: int, share: float) -> None:
-    """Fewer segments may be known to nobody, but what is called proved is the least."""
-    surfaces = drawn_at_random(seed, count)
-    assume(any(reached(one).any() for one in surfaces))
-    sets = covering(surfaces, share)
-    areas = surfaces[0].vertex_areas
-    whole = areas[np.any([reached(one) for one in surfaces], axis=0)].sum()
-    least = []
-    for some in sets:
-        found = decomposition_of(together([surfaces[n] for n in some]))
-        assume(found.instance.most_live_loops < 2 and len(found.instance.cells) < 10)
-        cell = np.array(found.vertex_cell)
-        inside = cell != OUTSIDE
-        weights = np.bincount(cell[inside], areas[inside], len(found.instance.cells))
-        fronts = front_by_subsets(found.instance, weights.tolist())
-        least.append(min(k for k, w in fronts.items() if w >= share * whole - 1e-9))
-    choice = choose(surfaces, share, None, Options())
-    assert len(choice.set_ups) == len(sets[0])
-    assert choice.covered_share >= share - 1e-9
-    assert choice.solution.segments >= min(least)
-    if choice.proved:
-        assert choice.solution.segments == min(least)
-
-
-@pytest.mark.slow
-@examples(12)
-@given(
-    seed=st.integers(0, 10**6), price=st.sampled_from([1, 2, 5, 1.001, 1.999, 999_999.999, 10**6])
-)
-def test_a_change_over_has_its_price(seed: int, price: float) -> None:
-    """To a thousandth of a lift-off, up to the highest price: sums of fractions are exact."""
-    surfaces = drawn_at_random(seed, 3)
-    assume(any(reached(one).any() for one in surfaces))
-    everything = np.any([reached(one) for one in surfaces], axis=0)
-    costs = []
-    for size in (1, 2, 3):
-        for some in combinations(range(3), size):
-            if (np.any([reached(surfaces[n]) for n in some], axis=0) == everything).all():
-                graph = decomposition_of(together([surfaces[n] for n in some])).instance
-                assume(graph.most_live_loops < 2)
-                costs.append(minimum(graph) - size + Fraction(str(price)) * (size - 1))
-    choice = choose(surfaces, 1.0, price, Options())
-    used = len(choice.set_ups)
-    assert (choice.solution.segments or 0) - used + Fraction(str(price)) * (used - 1) == min(costs)
 
 
 @pytest.mark.parametrize("seed", [200, 1300, 2100])
@@ -183,18 +132,6 @@ def test_the_part_turned_round_is_covered_whole(found: cellcolor.ChosenSetUps) -
     painted = [areas[~mask].sum() for mask in masks]
     assert sum(painted) == pytest.approx(areas[reached(answer.surface)].sum())
     assert cellcolor.check(answer.surface, answer.solution).valid
-
-
-@pytest.mark.second
-def test_each_set_up_is_driven_and_judged() -> None:
-    scene = shipped("square", 100)
-    x, y, z = scene.placement.position_m
-    found = cellcolor.setups(scene, at=[(x, y, z, 0, 0, pi / 2)])
-    planned = found.plan(spacing_m=0.05)
-    assert len(planned) == len(found.answer.set_ups)
-    assert all(one.verdict.valid for one in planned)
-    driven = sum(one.trajectory.lift_offs for one in planned)
-    assert driven == found.answer.lift_offs
 
 
 def on_a_rail(scene: Scene) -> Scene:
@@ -279,16 +216,6 @@ def test_stops_are_read_and_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert "robot.fixed_joints.rail_joint: no such joint" in capsys.readouterr().err
 
 
-def test_the_distance_is_that_from_the_arms_base() -> None:
-    scene = long_plate()
-    near = scene.with_setup(scene.setup.varied(robot={"fixed_joints": {"rail_joint": 0.6}}))
-    far = near.moved(position_m=(0.45, 0.6 + 1.8, 0.0))
-    assert cellcolor.build(scene).report.survey.distance_m == pytest.approx(0.35, abs=0.02)
-    assert cellcolor.build(near).report.survey.distance_m == pytest.approx(0.35, abs=0.02)
-    away = cellcolor.build(far).report.survey.distance_m
-    assert away == pytest.approx(np.hypot(0.35, 1.0), abs=0.02)
-
-
 def test_what_cannot_be_set_up_is_refused_in_a_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -316,8 +243,6 @@ def test_what_cannot_be_set_up_is_refused_in_a_line(
     for price in (float("nan"), 1e17, 1e306, 0.5):
         with pytest.raises(cellcolor.InputError, match=r"change_over: must be .* 1 to 1000000"):
             cellcolor.setups("wok_obstacle", change_over=price)
-    with pytest.raises(cellcolor.InputError, match="change_over: must have no more than three"):
-        choose([], 1.0, 1.0004, Options())
 
 
 def test_candidates_that_the_time_limit_left_unbuilt_are_said(

@@ -100,18 +100,6 @@ def test_nothing_is_proved_by_what_is_not_known() -> None:
     assert paper.fewest_for(two.covered_share).proved
 
 
-def test_cells_left_out_are_outside() -> None:
-    row = cellcolor.decompose("half_pipe")
-    rest, kept = row.without_cells([0, 3])
-    assert kept == [c for c in range(len(row.cells)) if c not in (0, 3)]
-    for new, old in enumerate(kept):
-        assert rest.cells[new].loops == row.cells[old].loops
-        assert rest.cells[new].colors == row.cells[old].colors
-        for dart in (dart for loop in rest.cells[new].loops for dart in loop):
-            beyond = row.across(dart)
-            assert rest.across(dart) == (kept.index(beyond) if beyond in kept else OUTSIDE)
-
-
 STRIP = drawn("AAAABBBBBBCC AAAABBBBBBCC", {"A": [0], "B": [1], "C": [2]})
 """Three colors side by side, of 8, 12 and 4 vertices."""
 
@@ -149,17 +137,6 @@ def test_a_lift_off_more_for_what_weighs_nothing_is_no_point_of_the_front() -> N
     assert points[-1].covered_share == 1
 
 
-def test_two_regions_may_need_four_segments() -> None:
-    """Each color's region is connected through the middle, where they cut each other apart."""
-    surface = drawn("ABAB CCCC ABAB", {"A": [0], "B": [1], "C": [0, 1]})
-    front = cellcolor.tradeoff(surface)
-    areas = [cell.area or 0.0 for cell in front.instance.cells]
-    exhaustive = front_by_subsets(front.instance, areas)
-    assert front.points[-1].segments == 4
-    for segments, area in exhaustive.items():
-        assert most(front, segments) * sum(areas) == pytest.approx(area)
-
-
 @pytest.mark.parametrize(
     ("given", "field"),
     [
@@ -172,11 +149,6 @@ def test_what_cannot_be_asked_is_refused(given: dict[str, Any], field: str) -> N
     with pytest.raises(cellcolor.InputError) as found:
         cellcolor.tradeoff(STRIP, **given)
     assert found.value.field == field
-
-
-def test_an_empty_box_is_refused() -> None:
-    with pytest.raises(cellcolor.InputError, match="empty"):
-        cellcolor.WorldBox((0, 0, 1), (1, 1, 0))
 
 
 def test_the_command_prints_a_row_for_each_point(

@@ -223,6 +223,7 @@ def test_the_model_says_what_the_depth_first_search_says(family: str) -> None:
         found = count_segments(reference.division)
         if reference.lower_bound < found:
             continue
+        assert CpSatSolver().minimize(instance, Options(workers=1)).lower_bound == found
         if seed % 3:
             answer = CompleteModelSolver().minimize(instance, Options(workers=1))
             assert answer.model is not None and answer.model.constraints > 0

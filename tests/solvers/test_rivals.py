@@ -229,17 +229,6 @@ def test_the_best_at_the_time_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     assert solution.segments is not None and 4 <= solution.segments <= 7
 
 
-def test_at_the_deadline_choco_has_the_best_and_a_bound() -> None:
-    """It finds a division of this grid within a second, and would take hours for a proof.
-
-    On a machine so busy that it finds none, there is none.
-    """
-    found_or_skip("choco")
-    solution = solve(hub_grid(0, 10, 10, 4, 3), Options(deadline=Deadline.after(6.0)), "choco")
-    assert solution.status in ("feasible", "unknown")
-    assert solution.lower_bound >= 4  # of four colors there is a petal each
-
-
 # --- signals --------------------------------------------------------------------------------------
 
 

@@ -12,7 +12,7 @@ import itertools
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from itertools import chain, combinations
 
 from cellcolor.data.cells_and_edges import Cell
@@ -151,21 +151,8 @@ Entry = tuple[int, object]
 State = tuple[Entry, ...]
 
 
-@dataclass(frozen=True)
-class Way:
-    """A local painting of the next cell, and how it meets the frontier, by places in it.
-
-    ``met`` are places and the sub-cells joined there, ``looped`` pairs of sub-cells joined along
-    an edge from the cell to itself. ``sure`` are darts in state 0 across from such darts, with
-    the color in which they would be joined if the others showed no other. ``after`` is the next
-    frontier: a place of this one, or the color and sub-cell (or colors to show) of a new dart.
-    """
-
-    local: Local
-    met: tuple[tuple[int, int], ...]
-    looped: tuple[tuple[int, int], ...]
-    sure: tuple[tuple[int, frozenset[int]], ...]
-    after: tuple[int | tuple[int, object], ...]
+Layer = dict[State, tuple[int, list[tuple[State, Local]]]]
+"""The cheapest paintings of the swept part for each frontier, by the last cell's."""
 
 
 class CellSweep:
@@ -180,116 +167,90 @@ class CellSweep:
         self._options = options
         self._darts = [live_darts(instance, cell) for cell in instance.cells]
         self.order: list[int] = []
-        self._sweep()
-
-    def _sweep(self) -> None:
-        self._layers: list[dict[State, tuple[int, list[tuple[State, Local]]]]] = [{(): (0, [])}]
+        self._layers: list[Layer] = [{(): (0, [])}]
         frontier: list[int] = []
-        remaining = {cell.id for cell in self._instance.cells}
+        remaining = {cell.id for cell in instance.cells}
         while remaining:
             here = min(
                 remaining,
-                key=lambda c: (
-                    len([d for d in self._darts[c] if -d not in frontier])
-                    - len([d for d in self._darts[c] if -d in frontier]),
-                    c,
-                ),
+                key=lambda c: (sum(-1 if -d in frontier else 1 for d in self._darts[c]), c),
             )
             remaining.remove(here)
             self.order.append(here)
-            after = [d for d in frontier if -d not in self._darts[here]]
-            after += [d for d in self._darts[here] if self._instance.across(d) in remaining]
-            touched = [place for place, d in enumerate(frontier) if -d in self._darts[here]]
-            ways: dict[tuple[int, ...], list[Way]] = {}
-            layer: dict[State, tuple[int, list[tuple[State, Local]]]] = {}
+            darts = self._darts[here]
+            after = [d for d in (*frontier, *darts) if instance.across(d) in remaining]
+            ways = cache(partial(self._ways, here))
+            layer: Layer = {}
             for state, (cost, _) in self._layers[-1].items():
-                asked = tuple(state[place][0] for place in touched)
-                if asked not in ways:
-                    across = {-frontier[p]: c for p, c in zip(touched, asked, strict=True)}
-                    ways[asked] = list(self._ways(here, across, frontier, after))
-                for way in ways[asked]:
-                    if any(state[place][1] == shown for place, shown in way.sure):
+                seen = dict(zip(frontier, state, strict=True))
+                for local, own in ways(tuple(seen[-d][0] if -d in seen else None for d in darts)):
+                    found, closed = self._painted(seen | own, len(local.blocks), darts, after)
+                    least = layer.get(found, (closed + cost + 1, []))[0]
+                    if closed < 0 or least < cost + closed:
                         continue
-                    found, closed = self._paint(way, state)
-                    previous = layer.get(found)
-                    if previous is None or previous[0] > cost + closed:
-                        layer[found] = (cost + closed, [(state, way.local)])
-                    elif previous[0] == cost + closed:
-                        previous[1].append((state, way.local))
+                    if least > cost + closed:
+                        layer[found] = (cost + closed, [])
+                    layer[found][1].append((state, local))
             self._layers.append(layer)
             frontier = after
         ((self.minimum, _),) = self._layers[-1].values()
 
     def _ways(
-        self, here: int, across: dict[int, int], frontier: list[int], after: list[int]
-    ) -> Iterator[Way]:
-        """The local paintings that agree with the colors of the painted neighbors' darts."""
+        self, here: int, known: tuple[int | None, ...]
+    ) -> list[tuple[Local, dict[int, Entry]]]:
+        """The local paintings that agree with the colors of the painted neighbors' darts.
+
+        With each what the rest sees of the cell's darts; its sub-cells are segments -1, -2, ….
+        """
         darts = self._darts[here]
-        place = {dart: i for i, dart in enumerate(darts)}
-        at = {-dart: number for number, dart in enumerate(frontier)}
-        choices: list[list[int | None]] = []
-        for dart in darts:
-            if dart in across:
-                choices.append([None if across[dart] == ZERO else across[dart]])
-            else:
-                choices.append([None, *self._instance.joinable(dart)])
+        twins = [(place, darts.index(-d)) for place, d in enumerate(darts) if -d in darts]
+        choices: list[list[int | None]] = [
+            [None, *self._instance.joinable(d)]
+            if color is None
+            else [None if color == ZERO else color]
+            for d, color in zip(darts, known, strict=True)
+        ]
+        found = []
         for painted in itertools.product(*choices):
-            if any(painted[i] != painted[place[-d]] for i, d in enumerate(darts) if -d in place):
+            if any(painted[one] != painted[other] for one, other in twins):
                 continue
             for local in self._options(self._instance.cells[here], painted):
-                block_of = {
-                    darts[i]: number
-                    for number, (_, block) in enumerate(local.blocks)
-                    for i in block
+                own: dict[int, Entry] = {
+                    dart: (ZERO, shown) for dart, shown in zip(darts, local.shown, strict=True)
                 }
-                new: dict[int, tuple[int, object]] = {
-                    dart: (local.blocks[block_of[dart]][0], block_of[dart])
-                    if dart in block_of
-                    else (ZERO, local.shown[i])
-                    for i, dart in enumerate(darts)
-                }
-                yield Way(
-                    local,
-                    tuple((at[d], block) for d, block in block_of.items() if d in across),
-                    tuple((b, block_of[-d]) for d, b in block_of.items() if d > 0 and -d in place),
-                    tuple(
-                        (at[dart], local.shown[i])
-                        for i, dart in enumerate(darts)
-                        if dart in across
-                        and painted[i] is None
-                        and self._sure(dart, local.shown[i])
-                    ),
-                    tuple(new[d] if d in new else at[-d] for d in after),
-                )
+                for number, (color, block) in enumerate(local.blocks):
+                    own |= {darts[place]: (color, -1 - number) for place in block}
+                found.append((local, own))
+        return found
 
-    def _sure(self, dart: int, shown: frozenset[int]) -> bool:
-        """Whether an edge is joined for sure if both its darts show just this."""
-        return len(shown) == 1 and next(iter(shown)) in self._instance.joinable(dart)
+    def _painted(
+        self, entries: dict[int, Entry], blocks: int, darts: list[int], after: list[int]
+    ) -> tuple[State, int]:
+        """The frontier after painting a cell, and how many segments that completes.
 
-    @staticmethod
-    def _paint(way: Way, state: State) -> tuple[State, int]:
-        """The frontier after painting a cell, and how many segments that completes."""
-        known = 1 + max((s for c, s in state if c != ZERO), default=-1)  # type: ignore[type-var]
-        group = list(range(known + len(way.local.blocks)))
-        pairs = [(state[place][1], known + block) for place, block in way.met]
-        pairs += [(known + one, known + other) for one, other in way.looped]
-        for a, b in pairs:
-            one, other = group[a], group[b]
-            if one != other:
-                group = [one if g == other else g for g in group]
-        names: dict[int, int] = {}
-        found: list[Entry] = []
-        for entry in way.after:
-            if isinstance(entry, int):
-                color, segment = state[entry]
-            else:
-                color, segment = entry
-                if color != ZERO:
-                    segment = known + segment
+        Fewer than none if an edge in state 0 is joined for sure: both its darts show just one
+        color, the same, that can be joined.
+        """
+        group = {segment: segment for color, segment in entries.values() if color != ZERO}
+        group |= {segment: segment for segment in range(-blocks, 0)}
+        for dart in darts:
+            color, own = entries[dart]
+            if -dart not in entries:
+                continue
+            other = entries[-dart][1]
             if color != ZERO:
-                segment = names.setdefault(group[segment], len(names))
-            found.append((color, segment))
-        return tuple(found), len(set(group)) - len(names)
+                one, gone = group[own], group[other]
+                if one != gone:
+                    group = {segment: one if g == gone else g for segment, g in group.items()}
+            elif own == other and len(own) == 1 and own <= {*self._instance.joinable(dart)}:
+                return (), -1
+        names: dict[object, int] = {}
+        found = []
+        for color, own in (entries[dart] for dart in after):
+            found.append(
+                (color, own if color == ZERO else names.setdefault(group[own], len(names)))
+            )
+        return tuple(found), len(set(group.values())) - len(names)
 
     def optimal(self) -> Iterator[dict[int, Local]]:
         """Every painting with the fewest segments: its cells' local paintings."""

@@ -37,16 +37,6 @@ def shorter_way(first: Array, second: Array) -> tuple[Array, Array]:
     return np.minimum(step, 0), np.maximum(step, 0)
 
 
-def set_distance(first: Array, second: Array) -> float:
-    """How far two sets of joint angles (k, 5) are apart, rad modulo 2 pi; of one size only."""
-    if len(first) != len(second):
-        return float("inf")
-    if not len(first):
-        return 0.0
-    gap = wrapped(first[:, None] - second[None]).max(axis=2)
-    return float(max(gap.min(axis=0).max(), gap.min(axis=1).max()))
-
-
 def kinematics_apart(robot: Robot, joints: Array, torques: bool = True) -> float:
     """The largest difference from Pinocchio in poses, Jacobian, torques and both measures.
 

@@ -1,16 +1,12 @@
-"""What a planted fault in a plan is, and whether the oracle catches it.
+"""Faults planted in valid plans and solutions at random places, and whether an oracle catches them.
 
-Faults planted in valid solutions at random places, each with what an oracle has to say of it.
-
-Faults planted in valid plans at random places, each with what an oracle has to say of it.
-
-What it has to say is worked out here from the surface's colors alone, not by the checker.
+What it has to say of each is worked out here from the surface's colors alone, not by the checker.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -25,14 +21,14 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 
 Random = np.random.Generator
+Colors = Sequence[int | None]
 
 
 @dataclass(frozen=True)
 class Case:
-    """A surface that plans are broken on.
+    """A surface with a color, that plans are broken on.
 
     Attributes:
-        surface: it has a vertex with a color.
         other: another surface, whose plans are none of this one.
         folder: for files of plans.
     """
@@ -43,7 +39,6 @@ class Case:
 
     @cached_property
     def oracle(self) -> cellcolor.Oracle:
-        """Without a search: of plans that are not valid nothing has to be proved."""
         return cellcolor.Oracle(self.surface, workers=1, time_limit=20.0)
 
     @cached_property
@@ -53,13 +48,7 @@ class Case:
 
     @property
     def solution(self) -> Solution:
-        """The solution alone."""
         return self.solved.solution
-
-    @cached_property
-    def other_solution(self) -> Solution:
-        """A valid one of the other surface."""
-        return cellcolor.solve(self.other, workers=1, time_limit=20.0).solution
 
 
 @dataclass(frozen=True)
@@ -77,6 +66,10 @@ class Planted:
     vertices: tuple[int, ...] = ()
 
 
+Planter = Callable[[Case, Random], Planted | None]
+"""None where the surface has no place for such a fault."""
+
+
 def caught(case: Case, planted: Planted) -> bool:
     """Whether the oracle refuses it with kind and place."""
     try:
@@ -84,92 +77,76 @@ def caught(case: Case, planted: Planted) -> bool:
     except InputError as error:
         (said,) = planted.said
         return str(error).removeprefix(f"{planted.plan}: ") == said
-    if (
-        verdict.valid
-        or verdict.segments is not None
-        or not set(planted.said) <= {*verdict.problems}
-    ):
-        return False
-    if verdict.violations and tuple(map(str, verdict.violations)) != verdict.problems:
-        return False
     places = [tuple(case.surface.vertices[vertex].tolist()) for vertex in planted.vertices]
     return (
-        tuple(violation.vertex for violation in verdict.violations) == planted.vertices
+        not verdict.valid
+        and verdict.segments is None
+        and set(planted.said) <= {*verdict.problems}
+        and (not verdict.violations or tuple(map(str, verdict.violations)) == verdict.problems)
+        and tuple(violation.vertex for violation in verdict.violations) == planted.vertices
         and [violation.place for violation in verdict.violations] == places
     )
 
 
-Planter = Callable[[Case, Random], Planted | None]
-"""None where the surface has no place for such a fault."""
+# --- solutions ------------------------------------------------------------------------------------
 
 
 def wrong_number(case: Case, random: Random) -> Planted:
-    """A solution that claims more or fewer segments or lift-offs than its division has."""
-    solution = case.solution
-    segments, lift_offs = solution.segments, solution.lift_offs
-    assert segments is not None and lift_offs is not None
-    if random.random() < 0.5:
-        claim = int(random.choice([n for n in range(segments + 3) if n != segments]))
-        said = f"segments: says {claim}, the division has {segments}"
-        return Planted(replace(solution, segments=claim), (said,))
-    claim = int(random.choice([n for n in range(lift_offs + 3) if n != lift_offs]))
-    said = f"lift_offs: says {claim}, must be {lift_offs}"
-    return Planted(replace(solution, lift_offs=claim), (said,))
+    """More or fewer segments or lift-offs than the division has."""
+    name = str(random.choice(["segments", "lift_offs"]))
+    true = getattr(case.solution, name)
+    claim = int(random.choice([n for n in range(true + 3) if n != true]))
+    ends = {"segments": f"the division has {true}", "lift_offs": f"must be {true}"}
+    said = f"{name}: says {claim}, {ends[name]}"
+    return Planted(replace(case.solution, **{name: claim}), (said,))
 
 
 def wrong_bound(case: Case, random: Random) -> Planted:
-    """A solution that claims that more segments are needed than it has."""
-    solution, more = case.solution, int(random.integers(1, 4))
-    assert solution.segments is not None
-    name = str(random.choice(["lower_bound", "surface_lower_bound"]))
-    claim = solution.segments + more
-    segments = f"{solution.segments} segment{'' if solution.segments == 1 else 's'}"
+    """More segments are claimed to be needed than there are."""
+    segments = case.solution.segments
+    assert segments is not None
+    name, claim = str(random.choice(["lower_bound", "surface_lower_bound"])), segments + 1
+    found = f"{segments} segment{'' if segments == 1 else 's'} found"
     changes: dict[str, Any] = {name: claim}
     return Planted(
-        replace(solution, **changes), (f"{name}: {claim} cannot be above the {segments} found",)
+        replace(case.solution, **changes), (f"{name}: {claim} cannot be above the {found}",)
     )
 
 
 def segment_renumbered(case: Case, random: Random) -> Planted:
-    """A solution with one sub-cell numbered as a segment of its own, which it is not."""
+    """One sub-cell numbered as a segment of its own, which it is not."""
     cells, segments = case.solution.cells, case.solution.segments
     assert cells is not None and segments is not None
     parts = [(c, s) for c, cell in enumerate(cells) for s in range(len(cell.subcells))]
     c, s = parts[random.integers(len(parts))]
     number = cells[c].subcells[s].segment
-    own = [(i, j) for i, j in parts if cells[i].subcells[j].segment == number]
-    changed = _with_subcell(cells, c, s, segment=segments)
-    if len(own) > 1:
-        i, j = own[0]
+    (i, j), *more = [at for at in parts if cells[at[0]].subcells[at[1]].segment == number]
+    said = f"segment numbers must be 0 to {segments - 1}"
+    if more:
         said = f"cells[{i}].subcells[{j}].segment: one segment has numbers [{number}, {segments}]"
-    else:
-        said = f"segment numbers must be 0 to {segments - 1}"
+    changed = _with_subcell(cells, c, s, segment=segments)
     return Planted(replace(case.solution, cells=changed), (said,))
 
 
-def subcell_recolored(case: Case, random: Random) -> Planted | None:
-    """A solution with one sub-cell in a color that its cell does not have."""
-    cells = case.solution.cells
+def subcell_recolored(case: Case, random: Random) -> Planted:
+    """One sub-cell in a color that its cell does not have."""
+    cells, graph = case.solution.cells, case.solved.instance
     assert cells is not None
-    graph = case.solved.instance
     c = int(random.integers(len(cells)))
     s = int(random.integers(len(cells[c].subcells)))
-    own = graph.cells[c].colors
-    color = int(random.choice([n for n in range(-1, len(graph.colors) + 1) if n not in own]))
-    changed = _with_subcell(cells, c, s, color=color)
+    lacking = [n for n in range(-1, len(graph.colors) + 1) if n not in graph.cells[c].colors]
+    color = int(random.choice(lacking))
     said = f"cells[{c}].subcells[{s}].color: cell {c} cannot be painted in color {color}"
+    changed = _with_subcell(cells, c, s, color=color)
     return Planted(replace(case.solution, cells=changed), (said,))
 
 
-def another_surface_solved(case: Case, random: Random) -> Planted:  # noqa: ARG001
-    """The solution of another surface."""
-    name = case.solved.instance.name
-    said = f"instance.sha256: the solution is not for {name!r} as it is here"
-    return Planted(case.other_solution, (said,))
+def another_surface_solved(case: Case, _: Random) -> Planted:
+    said = f"instance.sha256: the solution is not for {case.solved.instance.name!r} as it is here"
+    return Planted(cellcolor.solve(case.other, workers=1, time_limit=20.0).solution, (said,))
 
 
-def no_division(case: Case, random: Random) -> Planted:  # noqa: ARG001
-    """A solution that found no division."""
+def no_division(case: Case, _: Random) -> Planted:
     plan = replace(
         case.solution, status="unknown", segments=None, lift_offs=None, cells=None, seams=(),
         proved_for_surface=False, cutting_paths=None,
@@ -183,17 +160,7 @@ def _with_subcell(cells: Division, c: int, s: int, **changes: Any) -> Division:
     return (*cells[:c], CellDivision(cells[c].id, tuple(subcells)), *cells[c + 1 :])
 
 
-SOLUTION_PLANTERS: dict[str, Planter] = {
-    "solution: wrong number of segments": wrong_number,
-    "solution: bound too high": wrong_bound,
-    "solution: segment renumbered": segment_renumbered,
-    "solution: sub-cell in a wrong color": subcell_recolored,
-    "solution of another surface": another_surface_solved,
-    "solution without a division": no_division,
-}
-
-
-Colors = Sequence[int | None]
+# --- plans ----------------------------------------------------------------------------------------
 
 
 def _valid(surface: LabelledSurface, random: Random) -> list[int | None]:
@@ -217,7 +184,6 @@ def _wrong(case: Case, colors: Colors) -> tuple[tuple[str, ...], tuple[int, ...]
 
 def _formed(case: Case, colors: list[int | None], random: Random) -> Any:
     """The plan in one of the forms that can hold it."""
-    numbers = [-1 if color is None else color for color in colors]
     forms: list[Callable[[], Any]] = [
         lambda: colors,
         lambda: tuple(colors),
@@ -225,8 +191,8 @@ def _formed(case: Case, colors: list[int | None], random: Random) -> Any:
         lambda: Plan(tuple(colors)),
         lambda: _file(case, colors),
     ]
-    if -1 not in colors:  # which stands for no color in arrays of integers
-        forms += [lambda: np.array(numbers), lambda: np.array(numbers, dtype=np.int32)]
+    if not {-1, None} & {*colors}:  # -1 stands for no color in arrays of integers
+        forms += [lambda: np.array(colors), lambda: np.array(colors, dtype=np.int32)]
     named = dict(enumerate(case.surface.colors))
     if {*colors} <= {None, *named}:
         forms.append(lambda: [None if color is None else named[color] for color in colors])
@@ -240,53 +206,25 @@ def _file(case: Case, colors: Sequence[Any]) -> Path:
     return path
 
 
-def _at_some_vertices(
-    case: Case, random: Random, candidates: Sequence[int], wrong: Callable[[int], int | None]
-) -> Planted | None:
-    """A plan with a wrong color at one to three of some vertices; None if there are none."""
-    if not candidates:
-        return None
-    colors = _valid(case.surface, random)
-    count = min(len(candidates), int(random.integers(1, 4)))
-    for vertex in random.choice(candidates, count, replace=False).tolist():
-        colors[vertex] = wrong(vertex)
-    return Planted(_formed(case, colors, random), *_wrong(case, colors))
+def at_some_vertices(wrong: Callable[[int, tuple[int, ...]], Sequence[int | None]]) -> Planter:
+    """One to three vertices with one of the entries that are wrong there.
 
+    Args:
+        wrong: these, of the number of colors of the surface and the colors of a vertex.
+    """
 
-def _vertices(surface: LabelledSurface, reachable: bool) -> list[int]:
-    return [v for v, own in enumerate(surface.vertex_colors) if bool(own) == reachable]
+    def plant(case: Case, random: Random) -> Planted | None:
+        every = [wrong(len(case.surface.colors), own) for own in case.surface.vertex_colors]
+        candidates = [vertex for vertex, entries in enumerate(every) if entries]
+        if not candidates:
+            return None
+        colors = _valid(case.surface, random)
+        count = min(len(candidates), int(random.integers(1, 4)))
+        for vertex in random.choice(candidates, count, replace=False).tolist():
+            colors[vertex] = every[vertex][random.integers(len(every[vertex]))]
+        return Planted(_formed(case, colors, random), *_wrong(case, colors))
 
-
-def wrong_color(case: Case, random: Random) -> Planted | None:
-    """A color of the surface that does not reach the vertex."""
-    every = set(range(len(case.surface.colors)))
-    lacking = [v for v in _vertices(case.surface, True) if every - {*case.surface.vertex_colors[v]}]
-
-    def wrong(vertex: int) -> int:
-        return int(random.choice(sorted(every - {*case.surface.vertex_colors[vertex]})))
-
-    return _at_some_vertices(case, random, lacking, wrong)
-
-
-def color_at_unreachable(case: Case, random: Random) -> Planted | None:
-    """A color where none reaches."""
-    colors = len(case.surface.colors)
-    unreachable = _vertices(case.surface, False)
-    return _at_some_vertices(case, random, unreachable, lambda _: int(random.integers(colors)))
-
-
-def none_at_reachable(case: Case, random: Random) -> Planted | None:
-    """No color where one reaches."""
-    return _at_some_vertices(case, random, _vertices(case.surface, True), lambda _: None)
-
-
-def out_of_range(case: Case, random: Random) -> Planted | None:
-    """A number that is no color's, below and above."""
-    colors = len(case.surface.colors)
-    every = list(range(len(case.surface.vertices)))
-    return _at_some_vertices(
-        case, random, every, lambda _: int(random.choice([-2, -1, colors, colors + 1, 10**6]))
-    )
+    return plant
 
 
 def wrong_length(case: Case, random: Random) -> Planted:
@@ -318,36 +256,35 @@ def wrong_dtype(case: Case, random: Random) -> Planted:
     return Planted(colors.astype(kind), (said,))
 
 
-def shuffled(case: Case, random: Random) -> Planted | None:
-    """The entries in another order; None if every order is valid that was tried."""
-    valid = _valid(case.surface, random)
-    for _ in range(10):
-        colors = [valid[k] for k in random.permutation(len(valid))]
+def _first_wrong(case: Case, tried: Iterable[list[int | None]], random: Random) -> Planted | None:
+    for colors in tried:
         said, vertices = _wrong(case, colors)
         if said:
             return Planted(_formed(case, colors, random), said, vertices)
     return None
 
 
+def shuffled(case: Case, random: Random) -> Planted | None:
+    """The entries in another order; None if every order is valid that was tried."""
+    valid = _valid(case.surface, random)
+    orders = (random.permutation(len(valid)) for _ in range(10))
+    return _first_wrong(case, ([valid[k] for k in order] for order in orders), random)
+
+
 def two_exchanged(case: Case, random: Random) -> Planted | None:
     """Two vertices with each other's color; None if every pair is valid that was tried."""
-    colors = _valid(case.surface, random)
-    for _ in range(50):
-        i, j = random.choice(len(colors), 2, replace=False).tolist()
-        exchanged = list(colors)
-        exchanged[i], exchanged[j] = colors[j], colors[i]
-        said, vertices = _wrong(case, exchanged)
-        if said:
-            return Planted(_formed(case, exchanged, random), said, vertices)
-    return None
+    valid = _valid(case.surface, random)
+    pairs = (random.choice(len(valid), 2, replace=False).tolist() for _ in range(50))
+    orders = ({i: j, j: i} for i, j in pairs)
+    tried = ([valid[to.get(k, k)] for k in range(len(valid))] for to in orders)
+    return _first_wrong(case, tried, random)
 
 
 def color_renamed(case: Case, random: Random) -> Planted:
     """One color has another name than on the surface, wherever it stands."""
     colors = _valid(case.surface, random)
-    used = sorted({color for color in colors if color is not None})
-    renamed = int(random.choice(used))
-    names = {color: case.surface.colors[color] for color in used}
+    renamed = int(random.choice(sorted({color for color in colors if color is not None})))
+    names = dict(enumerate(case.surface.colors))
     names[renamed] += str(random.choice([" ", "_", "2"]))
     plan = [None if color is None else names[color] for color in colors]
     said = f"vertex_colors[{colors.index(renamed)}]: the surface has no color {names[renamed]!r}"
@@ -360,15 +297,14 @@ def other_surface(case: Case, random: Random) -> Planted | None:
     if len(colors) != len(case.surface.vertices):
         said = f"vertex_colors: {len(colors)} entries for {len(case.surface.vertices)} vertices"
         return Planted(Plan(tuple(colors)), (said,))
-    said, *vertices = _wrong(case, colors)
-    return Planted(Plan(tuple(colors)), said, *vertices) if said else None
+    return _first_wrong(case, [colors], random)
 
 
 PLANTERS: dict[str, Planter] = {
-    "wrong color": wrong_color,
-    "color at an unreachable vertex": color_at_unreachable,
-    "none at a reachable vertex": none_at_reachable,
-    "color number out of range": out_of_range,
+    "wrong color": at_some_vertices(lambda n, own: [c for c in range(n) if own and c not in own]),
+    "color at an unreachable vertex": at_some_vertices(lambda n, own: () if own else range(n)),
+    "none at a reachable vertex": at_some_vertices(lambda _, own: [None] if own else ()),
+    "color number out of range": at_some_vertices(lambda n, _: (-2, -1, n, n + 1, 10**6)),
     "wrong length": wrong_length,
     "NaN, fraction or truth value": no_integer,
     "array of a wrong type": wrong_dtype,
@@ -376,5 +312,10 @@ PLANTERS: dict[str, Planter] = {
     "two vertices exchanged": two_exchanged,
     "color renamed": color_renamed,
     "plan of another surface": other_surface,
-    **SOLUTION_PLANTERS,
+    "solution: wrong number of segments": wrong_number,
+    "solution: bound too high": wrong_bound,
+    "solution: segment renumbered": segment_renumbered,
+    "solution: sub-cell in a wrong color": subcell_recolored,
+    "solution of another surface": another_surface_solved,
+    "solution without a division": no_division,
 }

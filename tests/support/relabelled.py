@@ -1,20 +1,18 @@
-"""The same instance written in other ways.
+"""The same instance written in other ways, and whether two instances are one.
 
-Are two topological graphs the same up to the names of cells, edges and starting darts?
-
-A cell carries its set of color names and a set of cyclic lists of darts; a dart has a joinable
-set and, unless the outside lies beyond it, a twin. An isomorphism maps cells to cells and darts to
-darts and keeps all of that. Following loops and twins from one dart to its image fixes everything
-that hangs together; only unconnected loops and components leave a choice, which is searched.
-
-Written from the definition of the format alone: it shares nothing with the decomposition.
+A topological graph is a set of cyclic lists of darts, each dart with its twin and its joinable
+colors, each list with a cell and its colors. This is written from the definition of the format
+alone: it shares nothing with the decomposition.
 """
 
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
+from collections import defaultdict
 from dataclasses import replace
+from operator import eq
+
+import networkx as nx
 
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.instance import Instance
@@ -68,114 +66,29 @@ def mirrored(instance: Instance) -> Instance:
     return replace(instance, cells=cells, edges=edges, surface=None)
 
 
-Loop = tuple[int, int]  # (cell, number of the loop in it)
-
-
-class _Graph:
-    def __init__(self, instance: Instance) -> None:
-        self.instance = instance
-        self.loops: dict[Loop, tuple[int, ...]] = {
-            (cell.id, number): loop
-            for cell in instance.cells
-            for number, loop in enumerate(cell.loops)
-        }
-        self.place = {
-            dart: (loop, position)
-            for loop, darts in self.loops.items()
-            for position, dart in enumerate(darts)
-        }
-
-    def names(self, colors: tuple[int, ...]) -> frozenset[str]:
-        return frozenset(self.instance.colors[color] for color in colors)
-
-    def cell_kind(self, cell: int) -> object:
-        found = self.instance.cells[cell]
-        return self.names(found.colors), sorted(len(loop) for loop in found.loops)
-
-    def dart_kind(self, dart: int) -> object:
-        outside = self.instance.across(dart) == OUTSIDE
-        return outside, self.names(self.instance.joinable(dart))
-
-
-class _Match:
-    """A partial isomorphism."""
-
-    def __init__(self, one: _Graph, other: _Graph) -> None:
-        self.one, self.other = one, other
-        self.cells: dict[int, int] = {}
-        self.loops: dict[Loop, Loop] = {}
-
-    def copy(self) -> _Match:
-        twin = _Match(self.one, self.other)
-        twin.cells, twin.loops = dict(self.cells), dict(self.loops)
-        return twin
-
-    def add_cell(self, cell: int, image: int) -> bool:
-        if cell in self.cells or image in self.cells.values():
-            return self.cells.get(cell) == image
-        self.cells[cell] = image
-        return self.one.cell_kind(cell) == self.other.cell_kind(image)
-
-    def add_dart(self, dart: int, image: int) -> bool:
-        """Map a dart, and with it all that follows from that; False on a contradiction."""
-        darts: dict[int, int] = {}
-        todo = [(dart, image)]
-        while todo:
-            dart, image = todo.pop()
-            if dart in darts:
-                if darts[dart] != image:
-                    return False
-                continue
-            (loop, start), (loop_image, start_image) = self.one.place[dart], self.other.place[image]
-            if loop in self.loops or loop_image in self.loops.values():
-                return False  # reached before, and then dart would be in darts
-            around, around_image = self.one.loops[loop], self.other.loops[loop_image]
-            if len(around) != len(around_image) or not self.add_cell(loop[0], loop_image[0]):
-                return False
-            self.loops[loop] = loop_image
-            for step in range(len(around)):
-                d = around[(start + step) % len(around)]
-                e = around_image[(start_image + step) % len(around)]
-                if self.one.dart_kind(d) != self.other.dart_kind(e):
-                    return False
-                darts[d] = e
-                if self.one.instance.across(d) != OUTSIDE:
-                    todo.append((-d, -e))
-        return True
-
-    def extensions(self) -> Iterator[_Match]:
-        """Every way to map one more cell or loop."""
-        loop = next(
-            (lp for lp in self.one.loops if lp not in self.loops and lp[0] in self.cells), None
-        )
-        if loop is None:
-            cell = next(c.id for c in self.one.instance.cells if c.id not in self.cells)
-            for image in range(len(self.other.instance.cells)):
-                match = self.copy()
-                if match.add_cell(cell, image):
-                    yield match
-            return
-        for loop_image, around in self.other.loops.items():
-            if loop_image[0] == self.cells[loop[0]] and loop_image not in self.loops.values():
-                for dart in around:
-                    match = self.copy()
-                    if match.add_dart(self.one.loops[loop][0], dart):
-                        yield match
-
-    def complete(self) -> bool:
-        return len(self.cells) == len(self.one.instance.cells) and len(self.loops) == len(
-            self.one.loops
-        )
-
-
 def isomorphic(one: Instance, other: Instance) -> bool:
     """Whether two instances are the same rotation system with the same colors."""
-    if set(one.colors) != set(other.colors) or len(one.cells) != len(other.cells):
-        return False
-    if len(one.edges) != len(other.edges):
-        return False
+    graphs = _steps(one), _steps(other)
+    return set(one.colors) == set(other.colors) and nx.is_isomorphic(*graphs, eq, eq)
 
-    def search(match: _Match) -> bool:
-        return match.complete() or any(search(extension) for extension in match.extensions())
 
-    return search(_Match(_Graph(one), _Graph(other)))
+def _steps(instance: Instance) -> nx.DiGraph[object]:
+    """From each dart to the next one of its loop, to its twin, and to its cell."""
+
+    def names(colors: tuple[int, ...]) -> frozenset[str]:
+        return frozenset(instance.colors[color] for color in colors)
+
+    graph: nx.DiGraph[object] = nx.DiGraph()
+    steps: dict[tuple[object, object], set[str]] = defaultdict(set)
+    for cell in instance.cells:
+        graph.add_node(cell, colors=names(cell.colors))
+        for loop in cell.loops:
+            for dart, following in zip(loop, loop[1:] + loop[:1], strict=True):
+                outside = instance.across(dart) == OUTSIDE
+                graph.add_node(dart, colors=names(instance.joinable(dart)), outside=outside)
+                steps[dart, following].add("next")
+                steps[dart, cell].add("cell")
+                if not outside:
+                    steps[dart, -dart].add("twin")
+    graph.add_edges_from((a, b, {"kinds": kinds}) for (a, b), kinds in steps.items())
+    return graph

@@ -1,18 +1,14 @@
-"""All solutions of poses: by a family of arms, by ssik, and by Newton's method from many starts.
+"""All solutions of poses: by a family of arms, and by Newton's method from many starts.
 
-Neither of the two shares inverse kinematics with the package. Five joints put the tip on a point
-and the tool along a direction.
+That knows no inverse kinematics. Five joints put the tip on a point and the tool along a direction.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-import pinocchio as pin
-import pytest
-from independent import set_distance, wrapped
+from independent import wrapped
 from scipy.optimize import brentq
 
 from cellcolor.arrays import Array, Mask
@@ -91,37 +87,6 @@ def near_singular(robot: Robot, kind: str, off: float, count: int) -> Array:
     return np.array(found)
 
 
-ssik = pytest.importorskip("ssik")
-
-
-class Ssik:
-    """ssik's arm from Pinocchio's joint axes at zero."""
-
-    def __init__(self, robot: Robot) -> None:
-        data = robot.model.createData()
-        jacobian = pin.computeJointJacobians(robot.model, data, np.zeros(6))
-        origins = np.array([data.oMi[i].translation for i in range(1, 7)])
-        steps = np.diff(origins, axis=0, prepend=np.zeros((1, 3)))
-        self._arm = ssik.Manipulator.from_axes(jacobian[3:].T, np.vstack([steps, np.zeros((1, 3))]))
-        self._at_zero, self._tip = data.oMi[6].rotation, robot.tip
-
-    def solutions(self, point: Array, direction: Array, roll: float) -> Array:
-        """Joints 1 to 5 (s, 5) of all solutions, each once; any roll must give the same."""
-        x = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
-        x /= np.linalg.norm(x)
-        x = np.cos(roll) * x + np.sin(roll) * np.cross(direction, x)
-        return _once(self.whole_solutions(point, direction, x)[:, :5])
-
-    def whole_solutions(self, point: Array, direction: Array, x: Array) -> Array:
-        """All joints (s, 6) of all solutions with the tool's z and x axis so, each once."""
-        turned = np.column_stack([x, np.cross(direction, x), direction]) @ self._tip[:3, :3].T
-        pose = np.eye(4)
-        pose[:3, :3] = turned @ self._at_zero.T
-        pose[:3, 3] = point - turned @ self._tip[:3, 3]
-        found = self._arm.solve(pose, respect_limits=False, enumerate_windings=False)
-        return _once(np.array([np.asarray(each.q) for each in found]).reshape(-1, 6))
-
-
 def _once(solutions: Array) -> Array:
     """Solutions (s, joints) modulo full circles, each once."""
     kept: list[Array] = []
@@ -133,22 +98,6 @@ def _once(solutions: Array) -> Array:
 
 REGULAR = 1e-5  # of reach^3; nearer to a singularity two solutions are about to meet
 SAME = 1e-5  # rad
-
-
-@dataclass(frozen=True)
-class Compared:
-    """How two solvers agree.
-
-    Attributes:
-        poses, solutions: how many were compared.
-        different: poses whose sets differ, modulo full turns, either way.
-        farthest: largest difference of an angle within a pair, rad, where sets are the same.
-    """
-
-    poses: int
-    solutions: int
-    different: int
-    farthest: float
 
 
 @dataclass(frozen=True)
@@ -169,40 +118,29 @@ class Arm:
         found = self.family.solve(points, directions)
         return [each[~np.isnan(each[:, 0]), :5] for each in found]
 
-    def regular(self, five: Array) -> Array:
-        """Those of some solutions (s, 5) that are not about to meet another one."""
-        return five[self.is_regular(five)]
-
     def is_regular(self, five: Array) -> Mask:
         """Which of some solutions (s, 5) are not about to meet another one, (s,)."""
         poses = forward(self.robot, np.column_stack([five, np.zeros(len(five))]))
         determinant = task_determinant(*tip_jacobian(poses), poses.tool_axis)
         return np.asarray(determinant > REGULAR * self.family.reach**3)
 
-    def compared(self, q: Array) -> Compared:
-        """With ssik, on the poses of configurations (n, 6), with a turn by chance each."""
-        ssik, random = Ssik(self.robot), np.random.default_rng(3)
-        poses = forward(self.robot, q)
-        return self.held_against(
-            (
-                ssik.solutions(point, direction, random.uniform(0, 2 * np.pi))
-                for point, direction in zip(poses.tip, poses.tool_axis, strict=True)
-            ),
-            q,
-        )
+    def different(self, q: Array, starts: int) -> tuple[int, int]:
+        """At how many poses of configurations (n, 6) the sets are others than from many starts.
 
-    def held_against(self, every: Iterable[Array], q: Array) -> Compared:
-        """With all solutions (s, 5) that another solver has for the poses of configurations."""
+        Returns:
+            That, and how many solutions were compared.
+        """
         poses = forward(self.robot, q)
+        every = from_many_starts(self.robot, poses.tip, poses.tool_axis, starts, 8)
         solutions = different = 0
-        farthest = 0.0
         for ours, theirs in zip(self.solved(poses.tip, poses.tool_axis), every, strict=True):
-            ours, theirs = self.regular(ours), self.regular(theirs)
-            apart = set_distance(ours, theirs)
+            ours, theirs = (five[self.is_regular(five)] for five in (ours, theirs))
+            apart = wrapped(ours[:, None] - theirs[None]).max(axis=2, initial=0.0)
             solutions += len(ours)
-            different += apart > SAME
-            farthest = max(farthest, apart if apart <= SAME else 0.0)
-        return Compared(len(q), solutions, different, farthest)
+            different += len(ours) != len(theirs) or bool(
+                len(ours) and max(apart.min(axis=0).max(), apart.min(axis=1).max()) > SAME
+            )
+        return different, solutions
 
     def lost(self, q: Array, within: float) -> int:
         """How many of configurations (n, 6) are not among the solutions of their own poses."""

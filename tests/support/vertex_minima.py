@@ -8,7 +8,6 @@ from __future__ import annotations
 import itertools
 from collections import defaultdict
 from collections.abc import Collection, Sequence
-from math import inf
 
 from exhaustive_minima import with_fewer
 
@@ -75,11 +74,11 @@ def front_by_vertices(
     return with_fewer(best)
 
 
-def vertex_minimum(surface: LabelledSurface, most_states: float = inf) -> int | None:
+def vertex_minimum(surface: LabelledSurface) -> int:
     """The fewest connected components of equal color over all colorings of a mesh's vertices.
 
     Without the topological graph: vertices one by one in their order, which should be one with a
-    short frontier. None if that takes more than ``most_states`` partial colorings at a time.
+    short frontier.
     """
     cracks = {(c.i, c.j): c.colors for c in surface.cracks}
     neighbors: dict[int, set[int]] = defaultdict(set)
@@ -114,8 +113,6 @@ def vertex_minimum(surface: LabelledSurface, most_states: float = inf) -> int | 
                 )
                 closed = sum(s not in names for _, s in set(painted))
                 grown[found] = min(grown.get(found, cost + closed), cost + closed)
-        if len(grown) > most_states:
-            return None
         layer, frontier = grown, [painted_now[p] for p in kept]
     return min(layer.values())
 

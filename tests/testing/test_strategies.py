@@ -33,14 +33,6 @@ def test_valid_plans_are_valid_and_broken_ones_are_not(
 
 
 @examples(10)
-@given(labelled_surfaces(largest=8), st.data())
-def test_no_valid_plan_beats_the_minimum(surface: LabelledSurface, data: st.DataObject) -> None:
-    oracle = cellcolor.Oracle(surface, workers=1)
-    verdict = oracle.judge(data.draw(valid_plans(surface)))
-    assert verdict.segments is not None and verdict.segments >= oracle.bounds.lower
-
-
-@examples(10)
 @given(instances(most_cells=6, most_colors=3))
 def test_instances_can_be_solved(instance: Instance) -> None:
     assert len(instance.cells) <= 6 and len(instance.colors) <= 3
@@ -71,7 +63,7 @@ def test_a_sheet_is_what_its_numbers_say() -> None:
 )
 def test_what_fails_is_made_small(wanted: Callable[[LabelledSurface], bool]) -> None:
     """Two by two vertices are the fewest, and enough for all of these."""
-    few = settings(max_examples=300, deadline=None)
+    few = settings(max_examples=100, deadline=None)
     assert len(find(labelled_surfaces(largest=6), wanted, settings=few).vertices) == 4
 
 

@@ -200,29 +200,6 @@ def test_the_checker_finds_what_is_wrong() -> None:
     assert "leaves" in PathChecker(painting.surface, other).problems(path)[0]
 
 
-def test_a_path_goes_round_a_slit() -> None:
-    """A crack through all but one row: the path has to take the way round its end."""
-    size = 12
-    top = (size - 1) * size + 5
-    cut = square(size, (*slit(size, 5, range(1, size - 1)), (top, top + 1)))
-    checker = PathChecker(cut.surface, cut.segment_of)
-    for pattern in PATTERNS:
-        (path,) = covered(cut, pattern, 0.12).paths.paths
-        assert not checker.problems(path)
-        assert {True, False} == set((path.points[:, 0] > 0.6).tolist())
-
-
-def test_a_band_narrower_than_the_spacing_is_walked_along() -> None:
-    points = np.array([[x, y, 0.0] for y in (0.0, 0.02) for x in np.linspace(0, 1, 21)])
-    painting = one_segment(points, grid_faces(2, 21))
-    for pattern in PATTERNS:
-        found = covered(painting, pattern, 0.1)
-        (path,) = found.paths.paths
-        # There and back would be twice as long.
-        assert 0.8 < path.length < 1.5
-        assert found.in_all.covered == 1.0
-
-
 @pytest.mark.parametrize("width", [0.1, 0.11, 0.13])
 def test_a_band_as_wide_as_the_spacing_is_walked_along(width: float) -> None:
     """A line along its middle covers 0.075 on each side; a loop would go over most of it twice."""
@@ -275,10 +252,3 @@ def test_the_deadline_and_progress() -> None:
     assert told == ["covering part 1 of 1"]
     with pytest.raises(OutOfTime):
         covered(square(6), "contour", 0.2, deadline=Deadline.after(0.0))
-
-
-def test_nothing_to_cover() -> None:
-    painting = square(3)
-    none = np.full(9, -1)
-    found = cover(painting._replace(segment_of=none, colors=[]), spacing_m=0.1, tool_radius_m=0.1)
-    assert found.paths.paths == () and found.in_all.area_m2 == 0 and found.uncovered == ()

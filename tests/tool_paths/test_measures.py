@@ -48,13 +48,6 @@ def test_parallel_lines_pass_once() -> None:
     assert 1.0 <= found.mean_visits < 1.03
 
 
-def test_a_stretch_walked_twice_is_visited_twice() -> None:
-    once = lines(range(2, 40, 4), 161)
-    found, _ = measure(line_of(Laid(grid(41, 161, 0.025), [*once, *once[-2::-1]])), 0, 0.1)
-    # Back the same way: two passes everywhere, one at the end, where it turns round.
-    assert 1.95 < found.mean_visits < 2.1
-
-
 def test_one_line_covers_a_strip() -> None:
     laid = Laid(grid(41, 161, 0.025), lines(range(20, 21), 161))
     found, left = measure(line_of(laid), 0, 0.1)
@@ -66,30 +59,6 @@ def test_one_line_covers_a_strip() -> None:
     # By vertices: up to half a step less or more than 0.85 of 4 square metres, on either side.
     assert sum(place.area_m2 for place in left) == pytest.approx(4.0 * 0.85, abs=4 * 0.026)
     assert {round(place.place[1], 6) for place in left} == {0.0, 1.0}
-
-
-def test_circles_on_a_disc() -> None:
-    # Rings 0.01 m apart with 120 vertices each, the first at 0.01 m; circles at 0.05, 0.15, … m.
-    rings, around = 40, 120
-    angle = 2 * np.pi * np.arange(around) / around
-    radius = 0.01 * np.arange(1, rings + 1)
-    points = np.array([(r * np.cos(a), r * np.sin(a), 0.0) for r in radius for a in angle])
-    faces = grid_faces(rings, around, wrap_columns=True)[:, ::-1]
-    up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
-    walk: list[int] = []
-    for ring in (4, 14, 24, 34):
-        walk += [between * around for between in range(ring - 9, ring)] if walk else []
-        walk += [ring * around + k % around for k in range(around + 1)]
-    found, left = measure(
-        line_of(Laid(Triangles(points, faces, up, np.arange(len(faces))), walk)), 0, 0.1
-    )
-    length = sum(2 * 60 * 2 * r * np.sin(np.pi / around) for r in (0.05, 0.15, 0.25, 0.35))
-    assert found.length_m == pytest.approx(length + 3 * 0.1)
-    # All within 0.05 m of a circle, but for the outermost 0 m: the disc is 0.4 m.
-    assert found.covered == 1.0 and not left
-    # Where a circle closes and along the ways between circles there may be one pass more.
-    twice = 4 * np.pi * 0.05**2 + 3 * 0.1 * 0.1
-    assert 0.99 < found.mean_visits < 1 + twice / (np.pi * 0.4**2)
 
 
 def test_the_far_side_of_a_slit_is_not_covered() -> None:

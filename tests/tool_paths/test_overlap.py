@@ -86,17 +86,6 @@ def test_nothing_goes_over_a_crack() -> None:
     )
 
 
-def test_only_where_the_neighbors_allow_it() -> None:
-    """Half of the border is not to be crossed."""
-    surface = plate(5)
-    own = surface.vertices[:, 0] < 0.05
-    onto = ~own & (surface.vertices[:, 1] < 0.05)
-    widened = Overlap(np.full(len(own), 0.01), onto).widened(surface, own)
-    assert (widened[own]).all()
-    assert not widened[~own & ~onto].any()
-    assert widened[onto].any()
-
-
 def test_the_one_that_can_goes_all_the_way() -> None:
     """Half of the overlap each where both colors are, all of it where only one is."""
     surface = plate(7)

@@ -98,15 +98,6 @@ def test_a_corner_is_cut_as_a_bell_curve_does() -> None:
     assert (steps[1:] * steps[:-1]).sum(axis=1).min() > np.cos(np.radians(30))
 
 
-def test_beside_the_border_the_walk_stays() -> None:
-    size = 41
-    mesh = sheet(size)
-    walk = [size + 1 + column for column in range(39)]  # a fortieth from the border
-    walk += [line * size + walk[-1] % size for line in range(2, 39)]
-    assert not np.isin(walk, rounded(Laid(mesh, walk), 0.9 * SPACING, NEVER).vertices).all()
-    assert rounded(Laid(mesh, walk), 1.2 * SPACING, NEVER).vertices.tolist() == walk
-
-
 def test_over_a_sharp_edge_the_walk_stays() -> None:
     """A sheet folded by 90 degrees along its middle; far from the fold corners are rounded."""
     size = 41

@@ -67,7 +67,7 @@ def test_a_strip_that_is_too_wide_is_reached_by_spurs_from_the_walk() -> None:
 
 
 @given(st.lists(st.integers(8, 24), min_size=12, max_size=12))
-@examples(15)
+@examples(6)
 def test_nothing_of_some_size_is_left(gaps: list[int]) -> None:
     rows = [row for row in np.cumsum([5, *gaps]).tolist() if row < SIZE - 4]  # up to the border
     walk = back_and_forth(rows)

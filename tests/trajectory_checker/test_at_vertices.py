@@ -65,15 +65,6 @@ def test_the_color_is_that_of_the_nearest_configuration(data: st.DataObject) -> 
         assert (color is not None) or found.why_none(0)
 
 
-@pytest.mark.parametrize("name", ["wok_obstacle", "half_pipe"])
-def test_every_configuration_of_the_scene_has_the_color_that_it_was_given(name: str) -> None:
-    built = joint_paths.scene(name)
-    vertex, branch = np.nonzero(~np.isnan(built.configurations[..., 0]))
-    found = at_vertices(built, vertex, built.configurations[vertex, branch])
-    assert found.color.tolist() == built.node_color[vertex, branch].tolist()
-    assert found.branch.tolist() == branch.tolist()
-
-
 def test_why_a_configuration_has_no_color() -> None:
     built = joint_paths.scene()
     vertex = next(v for v, own in enumerate(built.surface.vertex_colors) if own)
@@ -91,28 +82,6 @@ def test_why_a_configuration_has_no_color() -> None:
     vertex, branch = np.argwhere(taken)[0].tolist()
     said = at(built, vertex, built.configurations[vertex, branch]).why_none(0)
     assert said == f"{built.branches[branch]!r} was removed there by the sliver policy"
-
-
-def test_a_tool_that_is_tilted() -> None:
-    """About the tip, so that only the tool's direction is wrong: by inverse kinematics."""
-    from cellcolor.frontend.prepared import prepare
-
-    built = joint_paths.scene()
-    prepared = prepare(built.scene)
-    vertex, branch = np.argwhere(built.node_color >= 0)[40].tolist()
-    color = int(built.node_color[vertex, branch])
-    normal = prepared.surface.normals[vertex]
-    across = np.cross(normal, [1.0, 0.0, 0.0])
-    across /= np.linalg.norm(across)
-    for degrees, tilted in ((0.8, False), (1.2, True)):
-        turn = math.radians(degrees)
-        direction = -(math.cos(turn) * normal + math.sin(turn) * across)
-        (found,) = prepared.arm.inverse(built.surface.vertices[[vertex]], direction[None])
-        held = at(built, vertex, found[branch])
-        assert held.color.tolist() == [-1 if tilted else color]
-        if tilted:
-            said = "the tool is 1.2 degrees off the normal, allowed: 1"
-            assert held.why_none(0) == said
 
 
 def test_a_tip_that_is_there_in_a_configuration_that_the_scene_does_not_have() -> None:

@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 import rasters
+from honest_drives import Honest
 from world import KINDS, World, standing
 
 from cellcolor.arrays import Array
 from cellcolor.data.surface import Crack
-from cellcolor.data.trajectory import ExtraLiftOff, Trajectory
+from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import prepare
@@ -30,13 +31,8 @@ def judged(trajectory: Trajectory, **options: Any) -> TrajectoryVerdict:
 def moved(points: Array, normals: Array, samples: slice) -> Trajectory:
     """The cap's trajectory with other poses at some samples, in the same branch."""
     prepared, _, trajectory = rasters.cap()
-    found = prepared.arm.inverse(points, -normals)
-    off = found - trajectory.joints[samples][:, None]
-    turns = np.round(off / (2 * np.pi)) * 2 * np.pi
-    off, found = np.abs(off - turns).max(axis=2), found - turns
-    nearest = np.nanargmin(off, axis=1)
     joints = trajectory.joints.copy()
-    joints[samples] = found[np.arange(len(found)), nearest]
+    joints[samples] = Honest(prepared, trajectory, 1).reached(points, normals, joints[samples])
     all_points, all_normals = trajectory.points.copy(), trajectory.normals.copy()
     all_points[samples], all_normals[samples] = points, normals
     return replace(trajectory, joints=joints, points=all_points, normals=all_normals)
@@ -48,17 +44,6 @@ def middle() -> int:
     return (first + after) // 2
 
 
-def test_counts() -> None:
-    trajectory = rasters.cap()[2]
-    stated = ExtraLiftOff(trajectory.strokes[0][1] - 1, 0, "winding", "", (0.0, 0.0, 0.0))
-    verdict = judged(trajectory, minimum_lift_offs=0)
-    assert (verdict.strokes, verdict.lift_offs, verdict.unclaimed_extra) == (2, 1, 1)
-    assert judged(trajectory).unclaimed_extra is None
-    verdict = judged(replace(trajectory, extra_lift_offs=(stated,)), minimum_lift_offs=0)
-    assert verdict.valid
-    assert (verdict.claimed_extra, verdict.unclaimed_extra) == (1, 0)
-
-
 def test_a_move_that_was_not_planned() -> None:
     trajectory = rasters.cap()[2]
     after = trajectory.strokes[0][1] + 60
@@ -66,33 +51,27 @@ def test_a_move_that_was_not_planned() -> None:
     assert [(fault.kind, fault.sample) for fault in verdict.faults] == [("unplanned", after)]
 
 
-def test_off_the_surface() -> None:
-    """Allowed is a millimeter."""
-    _, _, trajectory = rasters.cap()
-    at = slice(middle(), middle() + 1)
-    for height, kinds in ((0.0009, set()), (0.0012, {"off surface"})):
-        points = trajectory.points[at] + height * trajectory.normals[at]
-        verdict = judged(moved(points, trajectory.normals[at], at), timed=False)
-        assert set(verdict.fault_counts) == kinds
-        for fault in verdict.faults:
-            assert fault.sample == middle()
-            assert "1.2 mm" in fault.text
-
-
-def test_tilted() -> None:
-    """Allowed is a degree."""
-    _, _, trajectory = rasters.cap()
-    at = slice(middle(), middle() + 1)
-    normal = trajectory.normals[middle()]
+@pytest.mark.parametrize(
+    ("height", "degrees", "kinds", "said"),
+    [
+        (0.0009, 0.0, set(), ""),
+        (0.0012, 0.0, {"off surface"}, "1.2 mm"),
+        (0.0, 0.8, set(), ""),
+        (0.0, 1.2, {"tilted"}, "1.2 degrees"),
+    ],
+)
+def test_a_millimeter_and_a_degree_are_allowed(
+    height: float, degrees: float, kinds: set[str], said: str
+) -> None:
+    trajectory, at = rasters.cap()[2], slice(middle(), middle() + 1)
+    normal, turn = trajectory.normals[middle()], math.radians(degrees)
     across = np.cross(normal, [1.0, 0.0, 0.0])
-    across /= np.linalg.norm(across)
-    for degrees, kinds in ((0.8, set()), (1.2, {"tilted"})):
-        turn = math.radians(degrees)
-        turned = (math.cos(turn) * normal + math.sin(turn) * across)[None]
-        verdict = judged(moved(trajectory.points[at], turned, at), timed=False)
-        assert set(verdict.fault_counts) == kinds
-        for fault in verdict.faults:
-            assert (fault.sample, fault.last_sample) == (middle(), middle())
+    turned = math.cos(turn) * normal + math.sin(turn) * across / np.linalg.norm(across)
+    points = trajectory.points[at] + height * normal
+    verdict = judged(moved(points, turned[None], at), timed=False)
+    assert set(verdict.fault_counts) == kinds
+    for fault in verdict.faults:
+        assert (fault.sample, fault.last_sample) == (middle(), middle()) and said in fault.text
 
 
 def test_between_distant_samples_too() -> None:
@@ -151,7 +130,7 @@ def test_cracks_that_are_crossed() -> None:
     }
     random = np.random.default_rng(0)
     expected, cracks = 0, []
-    for i, j in random.permutation(prepared.surface.edges())[:60].tolist():
+    for i, j in random.permutation(prepared.surface.mesh.edges)[:60].tolist():
         middles = vertices[faces[(faces == i).any(axis=1) & (faces == j).any(axis=1)]].mean(axis=1)
         edge = (vertices[i] + vertices[j]) / 2
         walls = np.array([[middle, edge] for middle in middles])
@@ -272,20 +251,6 @@ def test_the_area_of_a_flat_raster() -> None:
     assert covered.length_m == pytest.approx(steps[both].sum(), rel=1e-6)
 
 
-def test_shares_as_by_hand_on_a_flat_square() -> None:
-    """Half of the lines left out: covered is what is so far from the last one."""
-    prepared, built, trajectory = rasters.square()
-    kept = trajectory.contact & (trajectory.points[:, 1] < np.median(trajectory.points[:, 1]))
-    half = replace(trajectory, contact=kept)
-    covered = check_trajectory(built, half).covered
-    assert covered is not None
-    # The rectangle is 0.12 m wide.
-    last = trajectory.points[kept, 1].max()
-    low = prepared.surface.vertices[:, 1].min()
-    for share, factor in ((covered.covered_share, 1.5), (covered.closely_covered_share, 0.75)):
-        assert share == pytest.approx((last - low + factor * 0.01) / 0.12, abs=0.01)
-
-
 def test_another_arms_trajectory_is_refused() -> None:
     trajectory = rasters.cap()[2]
     other = replace(trajectory, joint_names=tuple("abcdef"))
@@ -312,6 +277,7 @@ def test_two_meshes_are_refused() -> None:
         check_trajectory(replace(built, prepared=finer), trajectory)
 
 
+@pytest.mark.second
 @pytest.mark.parametrize(("margin", "kept"), [(0.0095, True), (0.0105, False)])
 def test_the_tool_keeps_its_margin_to_the_object(margin: float, kept: bool) -> None:
     """Its body ends 10 mm above the tip, which is on a flat square, and is flat itself."""

@@ -15,7 +15,7 @@ from cellcolor.errors import TooLarge
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.trajectory_checker.area import Strips, passes, repeated_stretches
 from cellcolor.trajectory_checker.contact import Contact
-from cellcolor.trajectory_checker.covered import Reached, reach
+from cellcolor.trajectory_checker.covered import reach
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, refined
 from examples import examples
@@ -128,16 +128,6 @@ def test_passes_are_counted() -> None:
     assert set(visits[(np.abs(x - 0.025) < 0.004) & (np.abs(y - 0.049) < 0.002)]) == {1}
 
 
-def test_the_same_line_again_is_a_second_pass() -> None:
-    once = along((0.02, 0.01), (0.02, 0.05))
-    for again in (once, once[::-1]):
-        both = np.concatenate([once, again])
-        strokes = np.repeat([0, 1], len(once))
-        vertices, visits = visits_on_flat(both, strokes)
-        beside = (np.abs(vertices[:, 0] - 0.02) < 0.0048) & (np.abs(vertices[:, 1] - 0.03) < 0.015)
-        assert set(visits[beside]) == {2}
-
-
 @examples(12)
 @given(
     begin=st.floats(0.0, 0.02),
@@ -210,16 +200,3 @@ def test_what_stays_in_one_place_is_refused() -> None:
     contact, none = contact_along(points, fine(FLAT)), np.full(len(points), -1)
     with pytest.raises(TooLarge, match="too often to be measured"):
         repeated_stretches(contact, none, 0.0025, 0.02)
-
-
-def test_patches_are_the_parts_and_their_areas() -> None:
-    mesh = fine(FLAT)
-    x = mesh.vertices[:, 0]
-    coverage = Reached(mesh, 0.01, np.full(len(x), 1e-6), np.full(len(x), np.inf), x < 0)
-    found = coverage.patches((x < 0.0101) | (x > 0.0799))
-    assert [area for area, _ in found] == pytest.approx(
-        [1e-6 * (x > 0.0799).sum(), 1e-6 * (x < 0.0101).sum()]
-    )
-    assert found[0][1][0] > 0.08
-    assert found[1][1][0] < 0.01
-    assert coverage.patches(np.zeros(len(x), dtype=bool)) == []

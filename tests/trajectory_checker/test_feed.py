@@ -119,12 +119,6 @@ def test_a_joint_at_its_acceleration_is_named() -> None:
     assert (feed.joint, feed.limited_by) == ("joint 1", "acceleration")
 
 
-def test_a_stroke_that_nothing_slows_down_says_so() -> None:
-    feed, _ = judged(np.full(200, 0.05), np.ones((200, 1)), np.full(1, 9.0), np.full(1, 1e9))
-    assert feed.slow_share == 1.0
-    assert (feed.joint, feed.why) == (None, ", no joint is near a limit")
-
-
 @pytest.mark.parametrize(("least", "kinds"), [(0.55, {"feed"}), (0.45, set())])
 def test_the_least_feed_is_held(least: float, kinds: set[str]) -> None:
     """A stretch at half the feed that is longer than the footprint; at the ends the arm rests."""

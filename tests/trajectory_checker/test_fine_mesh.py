@@ -58,13 +58,6 @@ def test_refined_meshes_conform(seed: int, longest: float) -> None:
         assert np.allclose(fine.normals[fine.triangles[:, corner]], normals)
 
 
-def test_owners_have_a_third_of_each_face() -> None:
-    surface = bumpy(1)
-    fine = refined(surface, 0.0008, NEVER)
-    owned = np.bincount(fine.owner, fine.mesh.area_faces, minlength=len(surface.vertices))
-    assert np.allclose(owned, surface.vertex_areas(), rtol=0.05)
-
-
 def brute_nearest(fine: FineMesh, point: Array) -> float:
     """The distance from a point to the nearest of very many points of the mesh."""
     share = np.linspace(0, 1, 41)
@@ -97,19 +90,6 @@ def test_points_far_from_the_surface_take_no_more_time() -> None:
     assert np.all(apart < nearest + 0.005)
 
 
-def test_of_a_thin_sheet_the_side_that_faces_the_tool_is_meant() -> None:
-    """Two squares 0.1 mm apart, back to back."""
-    flat = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]) * 0.02
-    under = flat - [0, 0, 1e-4]
-    faces = np.array([[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]])
-    normals = np.repeat([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], 4, axis=0)
-    fine = refined(Surface(np.concatenate([flat, under]), faces, normals), 0.003, NEVER)
-    place = np.array([[0.01, 0.01, -0.0001]])  # on the lower one
-    for side in (1.0, -1.0):
-        located = fine.locate(place, np.array([[0.0, 0.0, side]]))
-        assert located.normals[0, 2] == side
-
-
 def test_an_upright_tool_is_where_its_tip_is() -> None:
     """On a wall, 10 mm below a roof; and of a thin sheet on the side that faces it."""
     roof = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]) * 0.02
@@ -128,6 +108,7 @@ def test_an_upright_tool_is_where_its_tip_is() -> None:
     assert at.normals[0, 2] == 1
 
 
-def test_what_would_not_fit_into_memory_is_refused() -> None:
+def test_what_would_not_fit_into_memory_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cellcolor.trajectory_checker.fine_mesh._MOST", 1000)
     with pytest.raises(TooLarge, match="too large to be judged"):
-        refined(bumpy(0), 1e-5, NEVER)
+        refined(bumpy(0), 1e-3, NEVER)

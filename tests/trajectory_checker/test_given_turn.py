@@ -48,12 +48,6 @@ def test_turned_by_more_than_a_degree() -> None:
     assert "1.1 degrees off the turn" in fault.text and "allowed: 1" in fault.text
 
 
-def test_on_the_way_no_turn_is_asked_for() -> None:
-    (_, end), (begin, _) = rasters.turned()[2].strokes
-    middle = (end + begin) // 2
-    assert judged(with_turn(middle, middle + 1, 5.0)).valid
-
-
 def test_another_turn_of_the_set_is_another_branch() -> None:
     """It is given as well, but from one to the other the tool has to lift off."""
     first, after = rasters.turned()[2].strokes[0]

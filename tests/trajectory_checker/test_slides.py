@@ -49,23 +49,6 @@ def moved(honest: Honest, slide: np.ndarray) -> Trajectory:
     )
 
 
-def test_a_scara_is_driven_with_the_proved_number_of_lift_offs(honest: Honest) -> None:
-    verdict, trajectory = driven_scara().verdict, honest.trajectory
-    assert verdict.valid and verdict.faults == ()
-    assert verdict.lift_offs == 1 and trajectory.unplanned == ()
-    robot = honest.prepared.robot
-    assert np.ptp(trajectory.joints[trajectory.contact][:, SLIDE]) > 0.05  # the pipe slopes
-    assert (trajectory.joints >= robot.lower).all() and (trajectory.joints <= robot.upper).all()
-    # Upright all the time, and the normal is off by what the pipe slopes.
-    axes = forward(robot, trajectory.joints).tool_axis
-    assert np.abs(axes - [0, 0, -1]).max() < 1e-9
-    off = (-axes * trajectory.normals).sum(axis=1)[trajectory.contact]
-    assert off.min() < np.cos(0.2)
-    passed = np.diff(trajectory.times)
-    speed = np.abs(np.diff(trajectory.joints[:, SLIDE])) / passed
-    assert 0.13 < speed.max() <= 0.15 * (1 + 1e-9)
-
-
 def test_a_slide_over_its_speed_is_refused(honest: Honest) -> None:
     """Only the slide is: the joints that turn may go a hundred times as fast."""
     motion = MOTION.model_copy(

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 import rasters
-from planted_faults import twice
+from forged_drives import FORGERS
+from honest_drives import Honest
 
 from cellcolor.data.candidate_table import VALID
 from cellcolor.data.trajectory import (
@@ -23,21 +24,26 @@ from cellcolor.data.trajectory import (
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.deadline import NEVER
 from cellcolor.exports.joint_files import joints_csv
-from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import prepare
 from cellcolor.trajectory_checker.check import check_trajectory
 from cellcolor.trajectory_checker.contact import Contact
-from cellcolor.trajectory_checker.covered import Reached, failing_places
+from cellcolor.trajectory_checker.covered import failing_places
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.fine_mesh import refined
-from cellcolor.trajectory_checker.stated import completed, judge_left_out, judge_lift_offs
+from cellcolor.trajectory_checker.stated import completed, judge_lift_offs
 from cellcolor.trajectory_checker.tolerances import Limits
 
 
 def judged(trajectory: Trajectory, **options: Any) -> TrajectoryVerdict:
     _, built, _ = rasters.cap()
     return check_trajectory(built, trajectory, **options)
+
+
+def driven_twice() -> Trajectory:
+    """The raster with one stretch gone back and over again."""
+    prepared, _, trajectory = rasters.cap()
+    return FORGERS["a stretch twice"](Honest(prepared, trajectory, 1), np.random.default_rng(5))
 
 
 def test_an_extra_lift_off_has_to_be_there() -> None:
@@ -85,8 +91,7 @@ def test_what_is_rightly_left_out_is_not_uncovered() -> None:
 def test_a_repeated_stretch_may_be_stated() -> None:
     """All of it, or it is a fault as far as it is not stated."""
     loose = Limits(most_mean_visits=2.0)
-    prepared, _, trajectory = rasters.cap()
-    planted = twice(prepared, trajectory, np.random.default_rng(5)).trajectory
+    planted = driven_twice()
     (fault,) = judged(planted, limits=loose).of_kind("repeated")
     assert fault.sample is not None
     assert fault.last_sample is not None
@@ -103,8 +108,7 @@ def test_a_repeated_stretch_may_be_stated() -> None:
 
 def test_a_table_says_what_the_trajectory_states(tmp_path: Path) -> None:
     """A stretch twice is valid where it is stated; so it is in the table of the same motion."""
-    prepared, _, trajectory = rasters.cap()
-    again = twice(prepared, trajectory, np.random.default_rng(0)).trajectory
+    prepared, again = rasters.cap()[0], driven_twice()
     (fault,) = judged(again).of_kind("repeated")
     extra = ExtraLiftOff(again.strokes[0][1] - 1, 0, "winding", "", (0.0, 0.0, 0.0))
     assert fault.sample is not None
@@ -128,17 +132,6 @@ def test_a_table_says_what_the_trajectory_states(tmp_path: Path) -> None:
     assert "repeated" not in as_table.fault_counts
 
 
-def test_a_table_is_not_excused_from_what_an_arm_can_do() -> None:
-    """It cannot state what it leaves out; half of a stroke is left out all the same."""
-    trajectory = rasters.cap()[2]
-    first, after = trajectory.strokes[0]
-    gone = np.arange(first, (first + after) // 2)
-    kept = np.delete(np.arange(len(trajectory.times)), gone)
-    names = ("times", "joints", "points", "normals", "contact", "segment")
-    half = replace(trajectory, **{name: getattr(trajectory, name)[kept] for name in names})
-    assert judged(half, limits=Limits(silent=True)).of_kind("uncovered")
-
-
 @pytest.mark.parametrize(
     ("segments", "faults"), [((), 1), ((0,), 1), ((7,), 0), ((7, 8), 0)], ids=str
 )
@@ -155,27 +148,6 @@ def test_a_whole_segment_left_out_allows_one_fewer(segments: tuple[int, ...], fa
     found = FaultList(drive, timed=True)
     judge_lift_offs(replace(drive, left_out=left_out, extra_lift_offs=()), 2, found)
     assert found.counts["lift-offs"] == faults
-
-
-@pytest.mark.parametrize(
-    ("vertex", "there", "faults"), [(False, False, 1), (True, False, 0), (False, True, 0)]
-)
-def test_a_place_is_left_out_rightly_if_it_or_its_vertex_fails(
-    vertex: bool, there: bool, faults: int
-) -> None:
-    """A strip of triangles, whose last vertex is stated."""
-    places = np.array([[x, y, 0.0] for x in range(6) for y in range(2)])
-    corner = 2 * np.arange(5)[:, None]
-    faces = np.concatenate([corner + np.array([0, 2, 1]), corner + np.array([1, 2, 3])])
-    fine = refined(Surface(places, faces, np.tile([0.0, 0.0, 1.0], (12, 1))), 2.0, NEVER)
-    drive = rasters.cap()[2]
-    stated = replace(drive, left_out=(LeftOut(0, 0.5, "self collision", (5.0, 0.0, 0.0)),))
-    right = np.zeros(12, dtype=bool)
-    right[10] = vertex
-    coverage = Reached(fine, 0.1, np.full(12, 0.5), np.full(12, np.inf), right)
-    found = FaultList(drive, timed=True)
-    judge_left_out(stated, coverage, np.array([there]), found)
-    assert found.counts["claim"] == faults
 
 
 def test_stated_places_fail_where_the_branches_of_their_segment_do() -> None:

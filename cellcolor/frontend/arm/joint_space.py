@@ -88,26 +88,6 @@ class JointSpace:
             choices.append(np.arange(int(first), int(last) + 1))
         return tuple(choices)
 
-    def beyond(self, path: Array) -> Mask:
-        """Which configurations (k,) of a path are out of the limits, where the fewest are.
-
-        Args:
-            path: (k, joints), unwound; each joint is turned by whole periods.
-        """
-        found = np.zeros(len(path), dtype=bool)
-        for joint, way in enumerate(path.T):
-            low, high = self.lower[joint] - _ROUNDING, self.upper[joint] + _ROUNDING
-            if low <= way.min() and way.max() <= high:
-                continue
-            turns = np.arange(1)
-            if not self.slides[joint]:
-                first, last = (low - way.max()) / _CIRCLE, (high - way.min()) / _CIRCLE
-                turns = np.arange(int(np.floor(first)), int(np.ceil(last)) + 1)
-            moved = way + _CIRCLE * turns[:, None]
-            out = (moved < low) | (moved > high)
-            found |= out[out.sum(axis=1).argmin()]
-        return found
-
     def fits(self, path: Array) -> bool:
         """Whether all joints of a path (k, joints) can be turned into their limits."""
         return all(len(choice) for choice in self.turns(path))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -34,6 +33,7 @@ from cellcolor.frontend.arm.urdf import (
 
 _FASTEST = 60.0  # rad/s
 _MOST_DEGREES = 800.0  # per second; beyond, as 1000, a velocity means that there is no limit
+_REAL = ("inertial", "visual")  # what a link has that is more than a frame
 _NO_FORCE = "or leave the force constraint out: force = false under [constraints] of the setup"
 _WAY_OUT = (
     "; with more the arm is redundant, has endlessly many configurations for one pose, and colors "
@@ -63,9 +63,7 @@ def load_robot(
             frame of the flange link.
         fixed_joints: positions of joints that do not move, rad, or m of prismatic ones.
         shapes: how meshes collide; as hulls without it.
-        may_touch: pairs of links that are not tested against each other.
         force: whether forces are asked for, so that masses and efforts have to be known.
-        prismatic: how many of the joints are prismatic.
 
     Raises:
         InputError: a fault in either URDF (see :mod:`cellcolor.frontend.arm.urdf`), no such tip
@@ -188,11 +186,6 @@ def weight_faults(urdf: Urdf, standing: Mapping[str, float]) -> list[InputError]
     return [fault for fault in faults if fault is not None]
 
 
-def _is_thing(link: ET.Element) -> bool:
-    """Whether a link is more than a frame."""
-    return any(link.find(tag) is not None for tag in ("inertial", "visual"))
-
-
 def _where_given(limits: Array) -> Array:
     """Limits (joints,), NaN where the file has none; vendors write 0 as well."""
     return np.where(limits > 0, limits, np.nan)
@@ -206,7 +199,8 @@ def _warnings(whole: Urdf, standing: Mapping[str, float]) -> tuple[str, ...]:
     bare = [
         name
         for name, link in whole.links.items()
-        if name not in whole.shapes and (whole.joint_above.get(name) in moving or _is_thing(link))
+        if name not in whole.shapes
+        and (whole.joint_above.get(name) in moving or any(x.tag in _REAL for x in link))
     ]
     if bare:
         return (f"no collision shape, so hits nothing: {', '.join(map(repr, bare))}",)

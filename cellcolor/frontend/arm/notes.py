@@ -20,7 +20,7 @@ import trimesh
 from cellcolor.arrays import Array, Mask
 from cellcolor.data.wording import looks_like_millimeters
 from cellcolor.frontend.arm.body import Body, StandIn
-from cellcolor.frontend.arm.kinematics import Poses, forward
+from cellcolor.frontend.arm.kinematics import Poses, forward, nearest_points
 from cellcolor.frontend.arm.robot import Robot
 
 _NEAR = 1e-3  # m; a tip or a flange so near to where it is seen from shows no direction
@@ -67,13 +67,11 @@ def _outward(model: pin.Model, flange: Array, axes: Array) -> Array | None:
     if len(axes) < 2:
         return None
     last, before = model.jointPlacements[model.njoints - 1].inverse(), axes[-2]
-    u, p = last.rotation @ before, np.array(last.translation)
-    axis, cosine = axes[-1], float(axes[-1] @ u)
-    sine = 1.0 - cosine**2
-    if sine < _NEAR:
+    beside, axis = last.rotation @ before, axes[-1]
+    if 1.0 - float(axis @ beside) ** 2 < _NEAR:
         return None
-    wrist = (p @ axis - cosine * (p @ u)) / sine  # on the axis, nearest to the one before
-    ahead = float(flange @ axis) - wrist
+    wrist = nearest_points(np.zeros(3), axis, np.array(last.translation), beside)[0]
+    ahead = float((flange - wrist) @ axis)
     return None if abs(ahead) < _NEAR else np.asarray(axis * np.sign(ahead))
 
 

@@ -14,22 +14,23 @@ where the arm just reaches, and there the left side goes over from one into the 
 Newton's method leads from there to the solutions of the arm as its URDF has it. So the axes have to
 be parallel and meet within a millimeter and a milliradian only.
 
-The equation is evaluated at many angles, so two solutions that are nearer to each other than two of
-these angles may be missed, unless the left side comes near zero between them, where Newton's method
-is started as well. They are about to meet in a singularity then. In how far that happens is
-measured in ``docs/arms.md``.
+Newton's method starts at angles beside a change of sign, beside the end of a way, and where the
+left side comes nearest to zero. Where a solution is missing still, by the signs of the determinants
+(:mod:`cellcolor.frontend.arm.calibrated`), the angles are many more. Two that are nearer to each
+other than two angles may be missed together: they are about to meet in a singularity then. In how
+far that happens is measured in ``docs/arms.md``.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.calibrated import remark_on_missing
+from cellcolor.frontend.arm.calibrated import missing, remark_on_missing
 from cellcolor.frontend.arm.inverse import (
     InverseKinematics,
     check_lever,
@@ -45,18 +46,14 @@ from cellcolor.frontend.arm.kinematics import (
     one_across,
     turned_about,
 )
-from cellcolor.frontend.arm.newton import Polished
+from cellcolor.frontend.arm.newton import Polished, stacked
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.setup import RobotFiles
 
 _TOLERANCE = 1e-3  # m and rad; vendors write 1.5708 for a right angle
 _LEAST = 1e-6  # m; of a length, and of a sine
-_ANGLES = 64  # at which the equation is evaluated
-_PARTS = 16  # of the way between two of them where the equation changes fast or comes near zero
-_HALVINGS = 24  # to where a way ends
-_ROUNDS = 6  # of the method of the false position, before halving
-_CLOSE = 1e-3  # so near to zero the equation is left to Newton's method
-_ALMOST = 4.0  # times the step of the angles: less than the equation may change in between
+_ANGLES = 256  # at which the equation is evaluated
+_FINER = 4096  # the same of poses of which a solution is missing
 _FARTHEST = 0.5  # m, and for unit vectors; by how much a start may miss the pose
 
 
@@ -84,7 +81,7 @@ class OffsetWrist(InverseKinematics):
         parallel = np.linalg.norm(np.cross(self._axes[3], self._axes[4])) < _TOLERANCE
         if parallel or np.linalg.norm(here - there) > _TOLERANCE:
             raise self._refused(4, "its axis does not meet that of joint 4")
-        self._center, self._tip, self.tool = here, poses.tip[0], poses.tool_axis[0]
+        self._center, self._tip, self._tool = here, poses.tip[0], poses.tool_axis[0]
         self._base, self._shoulder = nearest_points(
             points[0], self._axes[0], points[1], self._axes[1]
         )
@@ -115,58 +112,68 @@ class OffsetWrist(InverseKinematics):
         directions: Array,
         branches: NDArray[np.intp] | None = None,  # noqa: ARG002
     ) -> Array:
-        arm, starts = self._robot, self._starts
-        polished = Polished(robot=arm, closed_form=starts, farthest=_FARTHEST, at_a_time=_ANGLES)
-        return polished.solve(points, directions)
+        found = self._polished(points, directions, _ANGLES)
+        lost = np.flatnonzero(missing(self._robot, found))
+        finer = self._polished(points[lost], directions[lost], _FINER)
+        both = stacked([found, finer])
+        found = both[: len(points)]
+        found[lost] = both[len(points) :]
+        return found
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
         """How many solutions are missing at least."""
         return (remark_on_missing(self._robot, self.solve(points, directions)),)
 
-    def _starts(self, points: Array, directions: Array) -> Array:
+    def _polished(self, points: Array, directions: Array, angles: int) -> Array:
+        """The solutions (n, s, 6) that starts at so many angles lead to."""
+        starts = partial(self._starts, angles=angles)
+        polished = Polished(
+            robot=self._robot, closed_form=starts, farthest=_FARTHEST, at_a_time=angles
+        )
+        return polished.solve(points, directions)
+
+    def _starts(self, points: Array, directions: Array, angles: int) -> Array:
         """Configurations (n, s, 6) next to solutions, NaN for none."""
-        count = len(points)
-        step = 2 * np.pi / _ANGLES
-        search = _Search(self, points, directions)
-        pose, number = np.divmod(np.arange(count * _ANGLES), _ANGLES)
-        off, near = search.asked(pose, step * number)
-        off, near = off.reshape(count, _ANGLES, 4), near.reshape(count, _ANGLES)
-        after, before = np.roll(off, -1, axis=1), np.roll(off, 1, axis=1)
-        size = np.abs(off)
-        back = (size <= np.abs(after)) & (size <= np.abs(before)) & (size < _ALMOST * step)
-        turning = (back & (off * after > 0) & (off * before > 0)).any(axis=2)
-        fast = (np.abs(after - off) > _ALMOST * step).any(axis=2) | (near < _ALMOST * step)
-        ends = (np.isnan(off) != np.isnan(after)).any(axis=2)
-        fast |= ends | turning
-        fast |= np.roll(fast, 1, axis=1) | np.roll(fast, -1, axis=1)
-        pairs = np.stack([off, after], axis=2)[~fast]
-        rows = np.flatnonzero(~fast)
-        search.between(pose[rows], step * number[rows], step, pairs)
-        rows = np.flatnonzero(fast)
-        turns = step * (number[rows, None] + np.arange(_PARTS + 1) / _PARTS)
-        fine = search.asked(np.repeat(pose[rows], _PARTS + 1), turns.ravel())[0]
-        fine = fine.reshape(len(rows), _PARTS + 1, 4)
-        search.between(pose[rows], step * number[rows], step / _PARTS, fine)
-        at, way, turn = search.found()
-        joints = self._joints(search.link(at, turn))[np.arange(len(at)), way]
-        joints[np.isnan(joints).any(axis=1)] = np.nan
-        order = np.argsort(at, kind="stable")
-        at, joints = at[order], joints[order]
+        pose, number = np.divmod(np.arange(len(points) * angles), angles)
+        link = self._link(points[pose], directions[pose], 2 * np.pi / angles * number)
+        off, joints = self._off(*link)
+        off = off.reshape(len(points), angles, 4)
+        beside = np.stack([np.roll(off, 1, axis=1), np.roll(off, -1, axis=1)])
+        with np.errstate(invalid="ignore"):
+            near = (off * beside <= 0).any(axis=0)
+            near |= (np.isnan(beside) | (np.abs(off) <= np.abs(beside))).all(axis=0)
+        near |= np.isnan(beside).any(axis=0)
+        near |= np.roll(near, 1, axis=1) | np.roll(near, -1, axis=1)
+        at, number, way = np.nonzero(near & ~np.isnan(off))
+        row = at * angles + number
+        found = self._joints(link[0][row], joints[row, way])
         place = np.arange(len(at)) - np.searchsorted(at, at)
-        starts = np.full((count, int(place.max(initial=-1)) + 1, 6), np.nan)
-        starts[at, place] = joints
+        starts = np.full((len(points), int(place.max(initial=-1)) + 1, 6), np.nan)
+        starts[at, place] = found
         return starts
 
-    def off(self, link: _Turned) -> tuple[Array, Array, Array]:
+    def _link(self, points: Array, directions: Array, turns: Array) -> tuple[Array, Array]:
+        """The link before joint 6 with the tool in poses (k,), turned about it by angles (k,).
+
+        Returns:
+            How the link is turned, (k, 3, 3), and where the center of axes 4 and 5 is, (k, 3).
+        """
+        x = turned_about(directions, frames_along(directions)[:, :, 0], turns)
+        there = np.stack([x, np.cross(directions, x), directions], axis=2)
+        rotation: Array = there @ frames_along(self._tool[None])[0].T
+        return rotation, points + rotation @ (self._center - self._tip)
+
+    def _off(self, rotation: Array, center: Array) -> tuple[Array, Array]:
         """For each way by how much the angle of axes 4 and 5 is off, and joints 1 to 3.
+
+        Args:
+            rotation, center: see :meth:`_link`.
 
         Returns:
             The cosine's error (k, 4), and joints (k, 4, 3) in rad; NaN where there is no such way.
-            And how near (k,) the center is to axis 1 or to the shoulder, where joints turn fast, as
-            a multiple of the circle on which it turns about the tool.
         """
         z, n, fourth, fifth = self._axes[0], self._axes[1], self._axes[3], self._axes[4]
-        center = link.moved(self._center, self._tip) - self._base
+        center = center - self._base
         # Joint 1: the center keeps its distance along axis 2, which turns about axis 1.
         out = n - (n @ z) * z
         wanted = (self._center - self._base) @ n - (n @ z) * (center @ z)
@@ -185,125 +192,24 @@ class OffsetWrist(InverseKinematics):
         second = angle_about(n, self._upper + turned_about(n, self._fore, third), goal)
         joints = np.stack([first, second, np.sign(self._axes[2] @ n) * third], axis=2)
         turned = turned_about(z, turned_about(n, fourth, second + third), first)
-        cosine = np.einsum("kwi,ki->kw", turned, link.rotation @ fifth)
-        circle = np.linalg.norm(np.cross(self._center - self._tip, self.tool))
-        near = np.minimum(np.hypot(x, y), np.sqrt(far.min(axis=1))) / max(circle, _LEAST)
-        return cosine - fourth @ fifth, joints, near
+        cosine = np.einsum("kwi,ki->kw", turned, rotation @ fifth)
+        return cosine - fourth @ fifth, joints
 
-    def _joints(self, link: _Turned) -> Array:
-        """All joints (k, 4, 6) in rad, as if axes 4 and 5 fitted."""
-        _, three, _ = self.off(link)
+    def _joints(self, rotation: Array, three: Array) -> Array:
+        """All joints (k, 6) in rad, as if axes 4 and 5 fitted.
+
+        Args:
+            rotation: (k, 3, 3) of the link before joint 6.
+            three: (k, 3) joints 1 to 3.
+        """
         z, n, fourth, fifth = self._axes[0], self._axes[1], self._axes[3], self._axes[4]
-        both = three[..., 1] + np.sign(self._axes[2] @ n) * three[..., 2]
+        both = three[:, 1] + np.sign(self._axes[2] @ n) * three[:, 2]
         across = one_across(fifth)
 
         def behind_third(vector: Array) -> Array:
             """A vector of the link before joint 6, seen from behind joint 3 at zero."""
-            here = (link.rotation @ vector)[:, None]
-            return turned_about(n, turned_about(z, here, -three[..., 0]), -both)
+            return turned_about(n, turned_about(z, rotation @ vector, -three[:, 0]), -both)
 
         q4 = angle_about(fourth, fifth, behind_third(fifth))
         q5 = angle_about(fifth, across, turned_about(fourth, behind_third(across), -q4))
-        last = np.full((*q4.shape, 1), self._locked)
-        return np.concatenate([three, q4[..., None], q5[..., None], last], axis=2)
-
-
-_Columns = tuple[NDArray[Any], ...]
-
-
-class _Search:
-    """Where the equation is zero, of poses (n, 3) each: brackets, and turns next to zeros."""
-
-    def __init__(self, arm: OffsetWrist, points: Array, directions: Array) -> None:
-        self._arm, self._points, self._directions = arm, points, directions
-        self._brackets: list[_Columns] = []
-        self._near: list[_Columns] = []
-
-    def link(self, at: Index, turns: Array) -> _Turned:
-        return _Turned(self._points[at], self._directions[at], turns, self._arm.tool)
-
-    def asked(self, at: Index, turns: Array) -> tuple[Array, Array]:
-        """The equation (k, 4) of poses (k,) at turns (k,) in rad, and how near joints turn fast."""
-        off, _, near = self._arm.off(self.link(at, turns))
-        return off, near
-
-    def _way(self, at: Index, way: Index, turns: Array) -> Array:
-        return np.asarray(self.asked(at, turns)[0][np.arange(len(at)), way])
-
-    def between(self, at: Index, first: Array, step: float, off: Array) -> None:
-        """Note what is between equal steps of rows of turns.
-
-        Args:
-            at: (k,) the pose of each row.
-            first: (k,) its first turn, rad.
-            off: (k, c, 4) the equation.
-        """
-        here, after = off[:, :-1], off[:, 1:]
-        row, number, way = np.nonzero(here * after <= 0)
-        low = first[row] + step * number
-        ends = here[row, number, way], after[row, number, way]
-        self._brackets.append((at[row], way, low, low + step, *ends))
-        # Where a way ends it goes over into another one: the end is one more turn.
-        for side, one, other in ((step, here, after), (-step, after, here)):
-            row, number, way = np.nonzero(~np.isnan(one) & np.isnan(other))
-            start = first[row] + step * (number + (side < 0))
-            inside, outside = start, start + side
-            for _ in range(_HALVINGS):
-                middle = (inside + outside) / 2
-                known = ~np.isnan(self._way(at[row], way, middle))
-                inside, outside = np.where(known, middle, inside), np.where(known, outside, middle)
-            ends = one[row, number, way], self._way(at[row], way, inside)
-            self._brackets.append((at[row], way, start, inside, *ends))
-            self._near.append((at[row], way, inside))
-        # Where it turns back close to zero there may be two solutions.
-        size = np.abs(off)
-        inner = size[:, 1:-1]
-        back = (inner <= size[:, 2:]) & (inner <= size[:, :-2]) & (inner < _ALMOST * step)
-        row, number, way = np.nonzero(back)
-        center, here = first[row] + step * (number + 1), off[row, number + 1, way]
-        for side in (-1, 1):
-            middle, there = center + side * step / 2, off[row, number + 1 + side, way]
-            value = self._way(at[row], way, middle)
-            self._near.append((at[row], way, middle))
-            self._brackets.append((at[row], way, center, middle, here, value))
-            self._brackets.append((at[row], way, middle, center + side * step, value, there))
-
-    def found(self) -> _Columns:
-        """Pose, way and turn in rad, (s,) each, at or next to zeros."""
-        every = [np.concatenate(each) for each in zip(*self._brackets, strict=True)]
-        changes = every[4] * every[5] <= 0
-        at, way, low, high, at_low, at_high = (each[changes] for each in every)
-        turn = (low + high) / 2
-        rows = np.arange(len(turn))
-        # The method of the false position, the end that stays counting half (Illinois); halving
-        # where joints turn so fast that the equation jumps.
-        for step in range(_ROUNDS + _HALVINGS):
-            a, b, left, right = low[rows], high[rows], at_low[rows], at_high[rows]
-            with np.errstate(divide="ignore", invalid="ignore"):
-                between = (a * right - b * left) / (right - left)
-            halved = np.isnan(between) | (step >= _ROUNDS)
-            turn[rows] = between = np.where(halved, (a + b) / 2, between)
-            value = self._way(at[rows], way[rows], between)
-            same = value * left > 0
-            low[rows], high[rows] = np.where(same, between, a), np.where(same, b, between)
-            at_low[rows] = np.where(same, value, left / 2)
-            at_high[rows] = np.where(same, right / 2, value)
-            if step >= _ROUNDS - 1:
-                rows = rows[np.abs(value) > _CLOSE]
-        near = zip((at, way, turn), *self._near, strict=True)
-        at, way, turn = (np.concatenate(each) for each in near)
-        return at, way, turn
-
-
-class _Turned:
-    """The link before joint 6 with the tool in poses, turned about it by angles (k,)."""
-
-    def __init__(self, points: Array, directions: Array, angles: Array, tool: Array) -> None:
-        x = turned_about(directions, frames_along(directions)[:, :, 0], angles)
-        there = np.stack([x, np.cross(directions, x), directions], axis=2)
-        self.points = points
-        self.rotation: Array = there @ frames_along(tool[None])[0].T
-
-    def moved(self, point: Array, tip: Array) -> Array:
-        """Where a point (3,) of the link at zero is, (k, 3)."""
-        return np.asarray(self.points + self.rotation @ (point - tip))
+        return np.column_stack([three, q4, q5, np.full(len(three), self._locked)])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
@@ -50,6 +52,16 @@ class Obstacle(Placement):
         return self.standing(Shape("mesh", vertices=vertices, faces=faces))
 
 
+_MESHES: dict[str, Callable[..., trimesh.Trimesh]] = {
+    "box": lambda *size: trimesh.creation.box(size),
+    "sphere": partial(trimesh.creation.icosphere, 2),
+    "cylinder": partial(trimesh.creation.cylinder, sections=20),
+    "cone": partial(trimesh.creation.cone, sections=20),
+    "capsule": lambda radius, axis: trimesh.creation.capsule(axis, radius, count=[20, 20]),
+}
+"""Filled shapes for pictures, by their sizes in m, anywhere along z."""
+
+
 class MeshObstacle(Obstacle):
     """A mesh file as a shell, its origin on the position."""
 
@@ -76,13 +88,11 @@ class Primitive(Obstacle):
         own = [name for name in type(self).model_fields if name not in Primitive.model_fields]
         return tuple(np.ravel([getattr(self, name) for name in own]).tolist())
 
-    @abstractmethod
-    def _mesh(self) -> trimesh.Trimesh:
-        """The shape for pictures."""
-
     def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shell:  # noqa: ARG002
         """The shape with its curved faces as many flat ones."""
-        mesh, (radius, *length) = self._mesh(), self._sizes
+        radius, *length = self._sizes
+        mesh = _MESHES[self.kind](*self._sizes)
+        mesh.apply_translation(-mesh.bounds.mean(axis=0))
         if len(length) == 1:  # pictures sort triangles by depth, which goes wrong with long ones
             mesh = mesh.subdivide_to_size(max(length[0] / 4, radius))
         return np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)
@@ -98,9 +108,6 @@ class BoxObstacle(Primitive):
     kind: Literal["box"] = "box"
     size_m: tuple[Length, Length, Length]
 
-    def _mesh(self) -> trimesh.Trimesh:
-        return trimesh.creation.box(self.size_m)
-
 
 class CylinderObstacle(Primitive):
     """A solid cylinder about its own z axis, centered on its position."""
@@ -109,18 +116,12 @@ class CylinderObstacle(Primitive):
     radius_m: Length
     height_m: Length
 
-    def _mesh(self) -> trimesh.Trimesh:
-        return trimesh.creation.cylinder(self.radius_m, self.height_m, sections=20)
-
 
 class SphereObstacle(Primitive):
     """A solid sphere, centered on its position."""
 
     kind: Literal["sphere"] = "sphere"
     radius_m: Length
-
-    def _mesh(self) -> trimesh.Trimesh:
-        return trimesh.creation.icosphere(subdivisions=2, radius=self.radius_m)
 
 
 class CapsuleObstacle(Primitive):
@@ -130,11 +131,6 @@ class CapsuleObstacle(Primitive):
     radius_m: Length
     axis_m: Length
 
-    def _mesh(self) -> trimesh.Trimesh:
-        whole = trimesh.creation.capsule(self.axis_m, self.radius_m, count=[20, 20])
-        whole.apply_translation(-whole.bounds.mean(axis=0))
-        return whole
-
 
 class ConeObstacle(Primitive):
     """A solid cone about its own z axis, its point up; the middle of its height on the position."""
@@ -142,11 +138,6 @@ class ConeObstacle(Primitive):
     kind: Literal["cone"] = "cone"
     radius_m: Length
     height_m: Length
-
-    def _mesh(self) -> trimesh.Trimesh:
-        whole = trimesh.creation.cone(self.radius_m, self.height_m, sections=20)
-        whole.apply_translation([0.0, 0.0, -self.height_m / 2])  # trimesh's stands on the origin
-        return whole
 
 
 _DRAWN, _VERTICES = 2.0, 441  # side of the square that is drawn, m, in squares of 0.1 m

@@ -86,14 +86,6 @@ class Surface:
         """The mesh alone, with everything computed from it."""
         return TriangleMesh(self.vertices, self.faces)
 
-    def vertex_areas(self) -> Array:
-        """(n,) a third of the area of the adjoining faces, m^2; the sum is the whole area."""
-        return self.mesh.vertex_areas
-
-    def edges(self) -> Faces:
-        """Every mesh edge once, (k, 2), smaller index first, in lexicographic order."""
-        return self.mesh.edges
-
     def lengths(self, edges: Faces) -> Array:
         """Lengths (k,) of mesh edges (k, 2), m."""
         i, j = edges.T

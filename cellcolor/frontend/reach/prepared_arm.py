@@ -28,7 +28,7 @@ from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at
 from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
 from cellcolor.frontend.parts.placement import rotation_from_rpy
 from cellcolor.frontend.reach.smooth import Measure
-from cellcolor.frontend.setup import Setup, Task
+from cellcolor.frontend.setup import Setup
 from cellcolor.memory import chunks
 
 _LONGEST = 100.0  # m; of an arm
@@ -40,9 +40,6 @@ class PreparedArm:
     """An arm and its task: what can be asked without any part, obstacle or ground.
 
     Attributes:
-        setup: the arm's files, and what it has to do.
-        robot: arm and tool.
-        kinematics: the arm's inverse kinematics.
         conditioning: the thresholds for this arm.
         own: None, or if the branches are sheets over a surface
             (:mod:`cellcolor.frontend.reach.sheets`), the kinematics whose solutions have no names.
@@ -131,16 +128,12 @@ def prepare_arm(setup: Setup) -> PreparedArm:
     with naming(setup.file):
         robot = _robot(setup)
         kinematics = _kinematics(setup, robot)
-        _check_reach(robot, kinematics.reach)
+        reach = float(f"{kinematics.reach:.4g}")
+        if kinematics.reach > _LONGEST:
+            message = f"the arm reaches {reach} m: {looks_like_millimeters(reach)}"
+            raise InputError(str(robot.files[0]), "robot", message)
         limits = conditioning(setup, kinematics.reach, robot)
     return PreparedArm(setup, robot, kinematics, limits)
-
-
-def _check_reach(robot: Robot, reach: float) -> None:
-    """Refuse an arm that is far too long."""
-    if reach > _LONGEST:
-        message = f"the arm reaches {reach:.4g} m: {looks_like_millimeters(float(f'{reach:.4g}'))}"
-        raise InputError(str(robot.files[0]), "robot", message)
 
 
 def _family(setup: Setup) -> type[InverseKinematics]:
@@ -187,21 +180,16 @@ def _robot(setup: Setup) -> Robot:
         force=setup.constraints.force,
         prismatic=family.prismatic,
     )
-    tip = robot.tip @ _contact_in_tip(setup.task)
-    robot = replace(robot, task=_task(setup, family), tip=tip)
+    # The frame on the surface, z into it, is ahead of the tip link, and turned back.
+    contact, task = np.eye(4), setup.task
+    contact[2, 3] = task.stand_off_m
+    contact[:3, :3] = rotation_from_rpy(task.tilt_rad, task.lead_rad, 0.0).T
+    robot = replace(robot, task=_task(setup, family), tip=robot.tip @ contact)
     _check_last_joint(robot)
     unknown = set(files.may_touch_ground) - {body.link for body in robot.bodies}
     if unknown:
         raise InputError(None, "robot.may_touch_ground", f"no solid link {min(unknown)!r}")
     return robot
-
-
-def _contact_in_tip(task: Task) -> Array:
-    """(4, 4) the frame on the surface, z into it, in the tip link: ahead of it, and turned back."""
-    pose = np.eye(4)
-    pose[2, 3] = task.stand_off_m
-    pose[:3, :3] = rotation_from_rpy(task.tilt_rad, task.lead_rad, 0.0).T
-    return pose
 
 
 def _task(setup: Setup, family: type[InverseKinematics]) -> TaskSpace:

@@ -65,7 +65,7 @@ def in_sheets(arm: PreparedArm, surface: Surface, judge: Judge, deadline: Deadli
     solutions = tracker.described(verdicts.configurations)
     limits = (bare.robot.lower, bare.robot.upper) if on.collision else None
     matching = Followed.of(along, nodes, solutions, tracker, limits)
-    pairs, _ = matching.along(surface.edges(), deadline)
+    pairs, _ = matching.along(surface.mesh.edges, deadline)
     slot = sheets_of(surface, pairs, nodes, solutions)
     vertex, there = np.arange(len(slot))[:, None], slot >= 0
     joints = np.where(there[:, :, None], solutions.joints[vertex, slot], np.nan)
@@ -96,7 +96,6 @@ class SheetKinematics(InverseKinematics):
         """Sheets over vertices.
 
         Args:
-            own: the arm's family, which knows no names.
             poses: points (n, 3) in m and unit vectors (n, 3) of the tool at the vertices.
             joints: (n, sheets, joints) in rad, NaN for none.
             valid: (n, sheets) which of them are followed.
@@ -167,7 +166,6 @@ class Followed(Matching):
     is their name.
 
     Attributes:
-        surface: the part.
         solutions: (n, s) of all vertices.
         tracker: follows them, and says what is a jump.
     """
@@ -233,12 +231,12 @@ def sheets_of(surface: Surface, links: Index, nodes: Mask, solutions: Solutions)
         InputError: linked solutions are two of one vertex; names the vertex and both. Or there are
             too many sheets.
     """
-    component = components_of(nodes, surface.edges(), links)
+    component = components_of(nodes, surface.mesh.edges, links)
     repeated = twice(component)
     if len(repeated):
         raise _cuspidal(surface, component, solutions.joints, *repeated[0].tolist())
     slot = _with_the_rest(
-        _packed(component, surface.edges()), ~nodes & ~np.isnan(solutions.determinants)
+        _packed(component, surface.mesh.edges), ~nodes & ~np.isnan(solutions.determinants)
     )
     if slot.shape[1] > MOST_SHEETS:
         message = f"its solutions fall into {slot.shape[1]} sheets, at most {MOST_SHEETS} fit"

@@ -22,8 +22,9 @@ def cards_of(report: MotionReport) -> tuple[Card, ...]:
     """All of them, those with nothing to tell left out."""
     cards = (
         _verdict(report),
-        _warnings(report),
-        _lacking(report),
+        # Likely mistakes in the scene, and what its numbers depend on.
+        _lines("Warnings", report.built.report.warnings, None),
+        _lines("What is not there", report.lacking, False),
         _proof(report),
         _feed(report),
         _coverage(report),
@@ -100,15 +101,8 @@ def _verdict(report: MotionReport) -> Card:
     return Card(title, tuple(texts), tuple(rows), False, times=times)
 
 
-def _warnings(report: MotionReport) -> Card | None:
-    """Likely mistakes in the scene, and what its numbers depend on."""
-    found = report.built.report.warnings
-    return Card("Warnings", found, (), None) if found else None
-
-
-def _lacking(report: MotionReport) -> Card | None:
-    """What was asked for, or is usual, and is not there."""
-    return Card("What is not there", report.lacking, (), False) if report.lacking else None
+def _lines(title: str, lines: tuple[str, ...], good: bool | None) -> Card | None:
+    return Card(title, lines, (), good) if lines else None
 
 
 def _feed(report: MotionReport) -> Card | None:

@@ -287,5 +287,4 @@ def _turns(points: Array) -> Array:
     way = np.diff(points, axis=0)
     way /= np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-12)
     cosine = np.clip((way[:-1] * way[1:]).sum(axis=1), -1, 1)
-    turns: Array = np.append(np.arccos(cosine), 0.0)
-    return turns
+    return np.append(np.arccos(cosine), 0.0)

@@ -15,7 +15,9 @@ _SHORT = 14  # characters
 
 def render_report(report: MotionReport) -> bytes:
     """``report.html``; the same report gives the same bytes."""
-    badges = "".join(map(_badge, badges_of(report)))
+    badges = "".join(
+        f"<li{_verdict_class(good)}>{html.escape(text)}</li>" for text, good in badges_of(report)
+    )
     proof = html.escape(_proof(report))
     return render_page(
         _title(report),
@@ -38,16 +40,8 @@ def _title(report: MotionReport) -> str:
 def _proof(report: MotionReport) -> str:
     if report.solution is None:
         return report.missing
-    return _sentence(report.solution.in_words(report.decomposition.instance))
-
-
-def _sentence(text: str) -> str:
+    text = report.solution.in_words(report.decomposition.instance)
     return text[:1].upper() + text[1:] + "."
-
-
-def _badge(badge: tuple[str, bool | None]) -> str:
-    text, good = badge
-    return f"<li{_verdict_class(good)}>{html.escape(text)}</li>"
 
 
 def _verdict_class(good: bool | None, first: str = "") -> str:

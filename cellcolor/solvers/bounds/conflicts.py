@@ -29,13 +29,9 @@ for k of them, 2^k sums have to be examined."""
 class Separation:
     """What a segment of one color region does to those of another.
 
-    A segment of one region that touches both merged cells ``ends`` divides merged cells of the
-    other region into ``groups``: no segment of the other region touches two merged cells of
-    different groups without crossing the first, however often cutting paths cross the edges.
-
-    Attributes:
-        ends: two merged cells that belong to the one region and not to the other.
-        groups: merged cells that belong to the other region and not to the one, two groups or more.
+    A segment of one region that touches both ``ends``, merged cells of that region alone, divides
+    merged cells of the other region alone into ``groups``, two or more: no segment of the other
+    region touches two groups without crossing it, however often cutting paths cross the edges.
     """
 
     ends: tuple[MergedCell, MergedCell]
@@ -49,9 +45,7 @@ class RegionPair:
     from cracks, edges remain only between merged cells of one color and merged cells of both.
 
     Attributes:
-        first: what segments of the first region do to those of the second.
-        second: what segments of the second region do to those of the first.
-        merged_cell_of: the merged cell of each cell of the regions.
+        first: what segments of the first region do to those of the second; ``second`` the reverse.
         cells: the cells of each merged cell.
         loops: the live darts around each merged cell.
         sides: the merged cells to the left and to the right of each edge and of each seam. Seams
@@ -83,10 +77,7 @@ class RegionPair:
                 self._polygons[merged_cell] += [highest, *loop, -highest]
                 self.sides[highest] = merged_cell, merged_cell
                 self.seams[merged_cell].append(highest)
-        ways = [
-            {edge for edge, shared in merged.joinable.items() if own in shared}
-            for own in (color, other)
-        ]
+        ways = [{e for e, both in merged.joinable.items() if own in both} for own in (color, other)]
         alone = [sorted({self.merged_cell_of[c] for c in own}) for own in (near - far, far - near)]
         self.first = Side(self, alone[0], alone[1], ways[0], ways[1])
         self.second = Side(self, alone[1], alone[0], ways[1], ways[0])
@@ -106,10 +97,9 @@ class RegionPair:
             curves: each the edges and seams that it crosses an odd number of times.
 
         Returns:
-            For each edge and seam the curves that a way crosses an odd number of times which leads
-            from where the polygon on the left begins, across the edge, to where the one on the
-            right begins, as the bits of a number. It does not matter where on the edge: a crossing
-            of the edge itself lies before that place in just one of the two polygons' lists.
+            For each edge and seam the curves, as the bits of a number, that a way crosses an odd
+            number of times which leads from where the polygon on the left begins, anywhere across
+            the edge, to where the one on the right begins (docs/bounds.md, "The test").
         """
         crossed: dict[int, int] = {}
         for number, curve in enumerate(curves):
@@ -152,11 +142,9 @@ class RegionPair:
 class Side:
     """What segments of one region do to those of the other.
 
-    Attributes:
-        merged_cells: the merged cells that belong to the one region and not to the other.
-
     Args:
-        parted: the merged cells that belong to the other region and not to the one.
+        merged_cells: those that belong to the one region and not to the other.
+        parted: those that belong to the other region and not to the one.
         own: the edges across which the one region goes on.
         other: the same for the other region.
     """
@@ -189,10 +177,9 @@ class Side:
         Each component of the wall (docs/bounds.md) gives one, if the segment separates
         some of its merged cells.
         """
-        if not self._wall or not {near, far} <= self._tree.keys():
-            return []
         if (near, far) not in self._known:
-            self._known[near, far] = self._separations(near, far)
+            reached = self._wall and {near, far} <= self._tree.keys()
+            self._known[near, far] = self._separations(near, far) if reached else []
         return self._known[near, far]
 
     def _separations(self, near: int, far: int) -> list[Separation]:
@@ -209,13 +196,9 @@ class Side:
                 for merged_cell in merged_cells:
                     root = connected[2 * merged_cell]
                     together.union(merged_cell, first.setdefault(root, merged_cell))
-            if len(groups := together.sets()) > 1:
-                found.append(
-                    Separation(
-                        (cells[near], cells[far]),
-                        tuple(tuple(cells[m] for m in sorted(group)) for group in groups),
-                    )
-                )
+            groups = [tuple(cells[m] for m in sorted(group)) for group in together.sets()]
+            if len(groups) > 1:
+                found.append(Separation((cells[near], cells[far]), tuple(groups)))
         return found
 
     def _with_seams(self, edges: set[int], without: set[int]) -> dict[int, tuple[int, int]]:
@@ -265,7 +248,7 @@ class Side:
         return connected
 
     def _components(self, parted: list[int], other: set[int]) -> list[list[int]]:
-        """The components of the wall that have two merged cells or more, each as its merged cells.
+        """The merged cells of each component of the wall that has two or more.
 
         The wall is all that the one region cannot pass: the merged cells of the other region alone,
         every edge that is not joinable for the one, corners, and the border curves.

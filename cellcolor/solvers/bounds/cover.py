@@ -8,6 +8,7 @@ cells where a region holds both. (Files call this kind of bound ``strangers``.)
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from math import ceil
@@ -49,30 +50,15 @@ class Cover:
 def color_regions(instance: Instance) -> list[Region]:
     """Every color's region, split into components over the edges that are joinable for it.
 
-    No segment reaches beyond one of these (docs/semantics.md, section 4).
-
-    They come by color, those of one color by their smallest cell.
+    No segment reaches beyond one of these (docs/semantics.md, section 4). They come by color, those
+    of one color by their smallest cell.
     """
-    near = [{color: list[int]() for color in cell.colors} for cell in instance.cells]
+    together = UnionFind((color, cell.id) for cell in instance.cells for color in cell.colors)
     for edge in instance.edges:
         for color in instance.joinable(edge.id):
-            near[edge.left][color].append(edge.right)
-            near[edge.right][color].append(edge.left)
-    regions: list[Region] = []
-    seen: set[tuple[int, int]] = set()
-    for cell, own in enumerate(near):
-        for color in own:
-            if (cell, color) in seen:
-                continue
-            seen.add((cell, color))
-            reached = [cell]
-            for place in reached:
-                for other in near[place][color]:
-                    if (other, color) not in seen:
-                        seen.add((other, color))
-                        reached.append(other)
-            regions.append((color, frozenset(reached)))
-    return sorted(regions, key=lambda region: (region[0], min(region[1])))
+            together.union((color, edge.left), (color, edge.right))
+    found = sorted(together.sets(), key=min)
+    return [(min(own)[0], frozenset(cell for _, cell in own)) for own in found]
 
 
 def set_cover(regions: Sequence[Region], deadline: Deadline = NEVER) -> Cover:
@@ -95,9 +81,6 @@ def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> li
     independent set, which can be seen by eye. Otherwise each group of cells that color regions
     connect has its own cells: repeatedly, a cell is added that a smallest cover of the others
     misses.
-
-    Args:
-        value: how many color regions are needed, or fewer.
 
     Returns:
         The cells, ascending; None if none were found in time.
@@ -150,13 +133,12 @@ def _independent_set(
 
     model = cp_model.CpModel()
     chosen = [model.new_bool_var("") for _ in group]
-    own: dict[int, list[cp_model.IntVar]] = {}
+    own: dict[int, list[cp_model.IntVar]] = defaultdict(list)
     for cell, literal in zip(group, chosen, strict=True):
         for number in sorted(touching[cell]):
-            own.setdefault(number, []).append(literal)
+            own[number].append(literal)
     for literals in own.values():
-        if len(literals) > 1:
-            model.add_at_most_one(literals)
+        model.add_at_most_one(literals)
     model.maximize(sum(chosen))
     found, _ = _solve(model, chosen, CERTIFICATE_EFFORT, deadline)
     return [group[place] for place in sorted(found or ())]
@@ -199,10 +181,7 @@ def _touching(regions: Sequence[Region]) -> list[set[int]]:
 
 
 def _smallest(
-    demands: Iterable[set[int]],
-    effort: float,
-    deadline: Deadline,
-    hint: Collection[int] = (),
+    demands: Iterable[set[int]], effort: float, deadline: Deadline, hint: Collection[int] = ()
 ) -> _Found:
     """A minimum hitting set, the fewest regions with at least one of each demand."""
     from ortools.sat.python import cp_model  # slow to import, so only where it is used
@@ -241,10 +220,7 @@ def _greedy(regions: Sequence[Region], touching: Sequence[set[int]]) -> set[int]
 
 
 def _solve(
-    model: cp_model.CpModel,
-    chosen: Sequence[cp_model.IntVar],
-    effort: float,
-    deadline: Deadline,
+    model: cp_model.CpModel, chosen: Sequence[cp_model.IntVar], effort: float, deadline: Deadline
 ) -> _Found:
     """Solve a small model as far as there is time and effort for it."""
     from ortools.sat.python import cp_model

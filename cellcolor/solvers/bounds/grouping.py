@@ -9,7 +9,6 @@ as darts.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,30 +18,8 @@ from cellcolor.deadline import NEVER, Deadline
 MOST_ENTRIES = 50_000_000
 """The most entries in a recursion's tables, eight bytes each."""
 
-
-@dataclass(frozen=True, slots=True)
-class Group:
-    """Darts that one connected area touches.
-
-    Attributes:
-        color: that of the area.
-        darts: places in the list of all darts, in the cyclic order in which the area has them.
-    """
-
-    color: int
-    darts: tuple[int, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Grouping:
-    """Groups that do not cross; every dart is in one of them."""
-
-    groups: tuple[Group, ...]
-
-    @property
-    def connections(self) -> int:
-        """How many there are in all groups together."""
-        return sum(len(group.darts) - 1 for group in self.groups)
+Group = tuple[int, tuple[int, ...]]
+"""A color, and the places of the darts that one connected area touches, in cyclic order."""
 
 
 def recursion_size(colors: Sequence[frozenset[int]]) -> int:
@@ -50,80 +27,57 @@ def recursion_size(colors: Sequence[frozenset[int]]) -> int:
     return (len(colors) + 1 + sum(map(len, colors))) * (len(colors) + 1)
 
 
-def best_grouping(colors: Sequence[frozenset[int]], deadline: Deadline = NEVER) -> Grouping:
-    """A grouping of a single loop's darts with the most connections.
+def best_grouping(colors: Sequence[frozenset[int]], deadline: Deadline = NEVER) -> list[Group]:
+    """A grouping of a single loop's darts with the fewest groups, so with the most connections.
 
-    ``best[i, j]`` is that of the darts from i to j, j left out. Dart i is in no group with a later
-    one, or it is connected in some color to a next dart k, and the darts between them are separate.
+    ``best[i, j]`` are the most of the darts from i to j, j left out, and ``linked[i, c][j]`` those
+    if i is in a group of color c. Dart i is in no group with a later one, or it is connected in
+    some color to a next dart k, and the darts between them are separate.
 
     Args:
         colors: those that each dart can be joined in, one at least, in cyclic order.
     """
-    tables = _Tables(colors)
-    for one in reversed(range(len(colors))):
+    count = len(colors)
+    best: Index = np.zeros((count + 1, count + 1), dtype=np.int64)
+    linked: dict[tuple[int, int], Index] = {}
+    able = {
+        color: [dart for dart, own in enumerate(colors) if color in own]
+        for color in frozenset[int]().union(*colors)
+    }
+    for one in reversed(range(count)):
         deadline.check()
-        tables.add(one)
-    return Grouping(tuple(tables.groups()))
-
-
-class _Tables:
-    """What the recursion has found.
-
-    Attributes:
-        best: the most connections of the darts from one to another.
-        linked: the same for each end if the first dart is in a group of some color.
-    """
-
-    def __init__(self, colors: Sequence[frozenset[int]]) -> None:
-        size = len(colors) + 1
-        self.best: Index = np.zeros((size, size), dtype=np.int64)
-        self.linked: dict[tuple[int, int], Index] = {}
-        self._colors = colors
-        self._darts = {
-            color: [dart for dart, own in enumerate(colors) if color in own]
-            for color in frozenset[int]().union(*colors)
-        }
-
-    def add(self, one: int) -> None:
-        """Fill in the rows of a dart; those of later darts are filled in."""
-        below = self.best[one + 1]
-        self.best[one] = below
-        for color in self._colors[one]:
+        below = best[one + 1]
+        best[one] = below
+        for color in colors[one]:
             found = below.copy()
-            for other in self._darts[color]:
+            for other in able[color]:
                 if one < other:
-                    further = below[other] + 1 + self.linked[other, color][other + 1 :]
+                    further = below[other] + 1 + linked[other, color][other + 1 :]
                     np.maximum(found[other + 1 :], further, out=found[other + 1 :])
-            self.linked[one, color] = found
-            np.maximum(self.best[one], found, out=self.best[one])
+            linked[one, color] = found
+            np.maximum(best[one], found, out=best[one])
 
-    def groups(self) -> list[Group]:
-        """Read the groups off the tables."""
-        groups = []
-        waiting = [(0, len(self._colors))]
-        while waiting:
-            first, end = waiting.pop()
-            if first >= end:
-                continue
-            color = next(
-                color
-                for color in sorted(self._colors[first])
-                if self.linked[first, color][end] == self.best[first, end]
-            )
-            darts = [first]
-            while (following := self._following(darts[-1], color, end)) is not None:
-                waiting.append((darts[-1] + 1, following))
-                darts.append(following)
-            waiting.append((darts[-1] + 1, end))
-            groups.append(Group(color, tuple(darts)))
-        return groups
-
-    def _following(self, last: int, color: int, end: int) -> int | None:
+    def following(last: int, color: int, end: int) -> int | None:
         """The next dart of a group, None after its last one."""
-        most = self.linked[last, color][end]
-        for other in self._darts[color]:
+        for other in able[color]:
             if last < other < end:
-                further = self.linked[other, color][end]
-                if most == self.best[last + 1, other] + 1 + further:
+                further = best[last + 1, other] + 1 + linked[other, color][end]
+                if linked[last, color][end] == further:
                     return other
         return None
+
+    groups: list[Group] = []
+    waiting = [(0, count)]
+    while waiting:
+        first, end = waiting.pop()
+        if first == end:
+            continue
+        most = best[first, end]
+        color = next(c for c in sorted(colors[first]) if linked[first, c][end] == most)
+        darts = [first]
+        while (other := following(darts[-1], color, end)) is not None:
+            waiting.append((darts[-1] + 1, other))
+            darts.append(other)
+        waiting.append((darts[-1] + 1, end))
+        groups.append((color, tuple(darts)))
+    return groups

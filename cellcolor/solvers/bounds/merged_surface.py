@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -16,8 +17,7 @@ class MergedCells:
     Attributes:
         loops: the live darts around each merged cell.
         sides: the merged cells to the left and to the right of each remaining edge.
-        joinable: the joinable colors of each remaining edge.
-        merged_cell_of: the merged cell of each cell.
+        joinable: the colors of each remaining edge.
     """
 
     loops: dict[int, list[list[int]]]
@@ -27,9 +27,9 @@ class MergedCells:
 
     def cells(self) -> dict[int, frozenset[int]]:
         """The cells that each merged cell consists of."""
-        members: dict[int, list[int]] = {}
+        members: dict[int, set[int]] = defaultdict(set)
         for cell, merged_cell in self.merged_cell_of.items():
-            members.setdefault(merged_cell, []).append(cell)
+            members[merged_cell].add(cell)
         return {merged_cell: frozenset(cells) for merged_cell, cells in members.items()}
 
 
@@ -108,13 +108,12 @@ class _Rings:
         found = []
         seen: set[int] = set()
         for first in self._next:
-            if first in seen:
-                continue
-            loop = [first]
-            while self._next[loop[-1]] != first:
-                loop.append(self._next[loop[-1]])
-            seen.update(loop)
-            found.append(loop)
+            if first not in seen:
+                loop = [first]
+                while (following := self._next[loop[-1]]) != first:
+                    loop.append(following)
+                seen.update(loop)
+                found.append(loop)
         return found
 
     def _link(self, one: int, following: int) -> None:

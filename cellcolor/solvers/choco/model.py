@@ -332,7 +332,7 @@ class Ranks:
         """A number for the links of each cell, which has that bound in other sums as well."""
         for cell, links in self.links_of.items():
             colors = [self.problem.colors_of(dart) for dart in self.problem.cells[cell]]
-            most = best_grouping(colors).connections
+            most = len(colors) - len(best_grouping(colors))
             self.linked[cell] = self._int(0, most, f"links_{cell}")
             self._post(self.model.sum(links, "=", self.linked[cell]))
 

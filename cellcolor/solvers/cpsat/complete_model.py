@@ -17,13 +17,7 @@ from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.dart_graph import complete_graph, dart_graph, enough_crossings
 from cellcolor.solvers.cpsat.formulation import SectorModel
-from cellcolor.solvers.cpsat.painting import (
-    Block,
-    canonical,
-    division_of,
-    moved,
-    painting_of,
-)
+from cellcolor.solvers.cpsat.painting import Block, canonical, division_of, moved, painting_of
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
 from cellcolor.solvers.interruptible import Runner
 
@@ -73,12 +67,12 @@ class CompleteModel(SectorModel):
 
     def _whole(self) -> list[list[Block]]:
         """Every cell painted whole, each in the color of its largest color region."""
-        size = {(cell, color): len(cells) for color, cells in self.regions for cell in cells}
-        chosen = [
-            max(cell.colors, key=lambda color, cell=cell: size[cell.id, color])  # type: ignore[misc]
-            for cell in self.instance.cells
-        ]
-        return canonical(self.sectors.graph, [[Block(color, set())] for color in chosen])
+        best: dict[int, tuple[int, int]] = {}
+        for color, cells in self.regions:
+            for cell in cells:
+                best[cell] = max(best.get(cell, (0, 0)), (len(cells), -color))
+        painting = [[Block(-best[cell.id][1], set())] for cell in self.instance.cells]
+        return canonical(self.sectors.graph, painting)
 
 
 class CompleteModelSolver:
@@ -120,10 +114,7 @@ class CompleteModelSolver:
 
 
 def least_left_out(
-    instance: Instance,
-    weights: Sequence[int],
-    segments: int,
-    options: Options,
+    instance: Instance, weights: Sequence[int], segments: int, options: Options
 ) -> tuple[frozenset[int], int] | None:
     """The cells left out when a number of segments covers the most, in the search space ``paper``.
 

@@ -161,7 +161,7 @@ def connections(m: SectorModel) -> None:
         if not sectors.rings[cell]:
             continue
         colors = [graph.darts[dart].colors for dart in darts]
-        most = best_grouping(colors, m.deadline).connections
+        most = len(darts) - len(best_grouping(colors, m.deadline))
         joined = [1 - m.apart[m.link_at[dart]][0] for dart in darts]
         changes = [m.apart[link][0] for link in m.ring_of[cell]]
         m.model.add(sum(own.get(cell, [])) + 2 + sum(changes) >= 2 * (sum(joined) - most))

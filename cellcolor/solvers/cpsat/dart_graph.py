@@ -2,14 +2,14 @@
 
 A strand is one of several parallel corridors across an edge; a seam is a virtual edge that makes
 one cyclic list of two loops of a cell (docs/semantics.md, sections 4 and 5). The reference solver
-(``dfs/graph.py``) and the checker (``dart_lists.py``) insert strands and seams with their own
-code. This is on purpose: the others reveal a mistake made in only one of the three.
+(``dfs/graph.py``) and the checker (``dart_lists.py``) have their own code for both, on purpose: a
+mistake in one of the three is found by comparing.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -117,7 +117,7 @@ def widened(
         TooLarge: the seams would need too many strands.
     """
     widths: list[int] = []
-    for own in _loops(instance):
+    for own in instance.live_loops:
         darts = sum(strands[abs(dart)] for loop in own for dart in loop)
         for _ in own[1:]:
             enough = max(0, darts // 2 - (len(own) == 2))
@@ -126,12 +126,8 @@ def widened(
     if sum(widths) > MOST_STRANDS:
         message = f"{sum(widths)} strands of seams, {MOST_STRANDS} are the most"
         raise TooLarge(f"The model was not built: it would need {message}.")
-    return with_strands(seam_places(instance), widths)
-
-
-def with_strands(seams: Iterable[Seam], widths: Iterable[int]) -> tuple[Seam, ...]:
-    """Seams with a number of strands each."""
-    return tuple(replace(seam, strands=w) for seam, w in zip(seams, widths, strict=True))
+    places = seam_places(instance)
+    return tuple(replace(seam, strands=w) for seam, w in zip(places, widths, strict=True))
 
 
 def complete_graph(instance: Instance, strands: Mapping[int, int]) -> DartGraph:

@@ -42,6 +42,12 @@ links are the ones to leaf sets of the hub's own, and between those where an are
 MOST_STATES = 20_000
 """The most states of the frontier; beyond that the hubs are left to other methods."""
 
+_Loops = Sequence[Sequence[int]]
+"""The live darts of each cell."""
+
+_Joinable = dict[int, frozenset[int]]
+"""The joinable colors of each dart."""
+
 Exact = tuple[int, dict[int, Areas]]
 """A minimum, and the areas of a division that has it: of cells that are divided or joined, each
 with its color and the darts across which it is joined. Other cells are joined from outside."""
@@ -57,7 +63,7 @@ def exact_minimum(instance: Instance, deadline: Deadline) -> Exact | None:
     """
     if instance.most_live_loops > 1:
         return None
-    loops: list[Sequence[int]] = [own[0] if own else () for own in instance.live_loops]
+    loops: _Loops = [own[0] if own else () for own in instance.live_loops]
     joinable = {dart: frozenset(instance.joinable(dart)) for loop in loops for dart in loop}
     # Edges connect all cells, so they make a tree if there are fewer of them than cells.
     star = loops if len(joinable) < 2 * len(loops) else _without_rim(instance, loops, joinable)
@@ -68,24 +74,16 @@ def exact_minimum(instance: Instance, deadline: Deadline) -> Exact | None:
 
 def painting_of_areas(graph: DartGraph, areas: dict[int, Areas]) -> Painting:
     """The division, canonical, on a graph with a strand of each live edge."""
-    number = graph.number_of
     joined = {-dart for own in areas.values() for _, darts in own for dart in darts}
     painting = []
     for cell, colors in enumerate(graph.colors):
-        beyond = [name[0] for name in (graph.darts[dart].name for dart in graph.lists[cell])]
-        whole = (min(colors), tuple(dart for dart in beyond if dart in joined))
-        painting.append(
-            [
-                Block(color, {number[dart, 1] for dart in darts})
-                for color, darts in areas.get(cell) or (whole,)
-            ]
-        )
+        edges = [graph.darts[dart].name[0] for dart in graph.lists[cell]]
+        own = areas.get(cell) or ((min(colors), tuple(dart for dart in edges if dart in joined)),)
+        painting.append([Block(c, {graph.number_of[d, 1] for d in darts}) for c, darts in own])
     return canonical(graph, painting)
 
 
-def _without_rim(
-    instance: Instance, loops: Sequence[Sequence[int]], joinable: dict[int, frozenset[int]]
-) -> list[Sequence[int]] | None:
+def _without_rim(instance: Instance, loops: _Loops, joinable: _Joinable) -> _Loops | None:
     """The loops of a wheel without its rim; None if this is no wheel."""
     hub = max(range(len(loops)), key=lambda cell: len(loops[cell]))
     spokes, count = loops[hub], len(loops[hub])
@@ -105,10 +103,7 @@ def _without_rim(
 
 
 def _tree_minimum(
-    instance: Instance,
-    loops: Sequence[Sequence[int]],
-    joinable: dict[int, frozenset[int]],
-    deadline: Deadline,
+    instance: Instance, loops: _Loops, joinable: _Joinable, deadline: Deadline
 ) -> Exact | None:
     """The minimum where cells and live edges make a tree: from the leaves to cell 0, and back."""
     sizes = (recursion_size([joinable[d] for d in own]) for own in loops)
@@ -127,18 +122,17 @@ def _tree_minimum(
     saving: dict[int, frozenset[int]] = {}
     for cell in reversed(order):
         deadline.check()
-        dart = up[cell]
-        darts = _down(loops[cell], dart)
+        dart, darts = up[cell], _down(loops[cell], up[cell])
         below = sum(fewest[d] for d in darts)
         sets = [saving[d] for d in darts if saving[d]]
-        least = below - best_grouping(sets).connections if sets else below + 1
+        least = below - len(sets) + max(1, len(best_grouping(sets)))
         if cell == 0:
             break
         fewest[-dart] = least
         saving[-dart] = frozenset(
             color
             for color in joinable[dart]
-            if below - best_grouping([frozenset((color,)), *sets]).connections == least - 1
+            if below - len(sets) + len(best_grouping([frozenset((color,)), *sets])) == least
         )
     areas: dict[int, Areas] = {}
     joined: dict[int, int] = {}
@@ -148,18 +142,16 @@ def _tree_minimum(
         sets = [saving[d] for d in darts]
         if cell in joined:
             darts, sets = [up[cell], *darts], [frozenset((joined[cell],)), *sets]
-        groups = best_grouping(sets).groups if sets else ()
-        areas[cell] = tuple((g.color, tuple(darts[place] for place in g.darts)) for g in groups)
+        groups = best_grouping(sets)
+        areas[cell] = tuple((color, tuple(darts[place] for place in own)) for color, own in groups)
         for color, own in areas[cell]:
             joined |= {instance.across(dart): color for dart in own if dart != up[cell]}
     return least, areas
 
 
 def _down(loop: Sequence[int], up: int) -> Sequence[int]:
-    """The darts of a cell in cyclic order from the one that leads up, without that."""
-    if not up:
-        return loop
-    at = loop.index(up)
+    """The darts of a cell in cyclic order from the one that leads up, if any, without that."""
+    at = loop.index(up) if up else len(loop)
     return (*loop[at + 1 :], *loop[:at])
 
 
@@ -171,10 +163,7 @@ _Step = dict[_State, tuple[_State, Areas]]
 
 
 def _hubs_minimum(
-    instance: Instance,
-    loops: Sequence[Sequence[int]],
-    joinable: dict[int, frozenset[int]],
-    deadline: Deadline,
+    instance: Instance, loops: _Loops, joinable: _Joinable, deadline: Deadline
 ) -> Exact | None:
     """Add hub after hub; a state says which leaf sets on the frontier are connected."""
     one_colored = [len(cell.colors) == 1 for cell in instance.cells]

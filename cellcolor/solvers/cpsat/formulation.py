@@ -250,7 +250,6 @@ class SectorModel:
         graph = self.sectors.graph
         found: dict[int, int] = {}
         for number, (_, cells) in enumerate(self.regions):
-            own = [cell for cell in sorted(cells) if len(graph.colors[cell]) == 1]
-            if own:
+            if own := [cell for cell in sorted(cells) if len(graph.colors[cell]) == 1]:
                 found[number] = max(own, key=lambda cell: len(graph.lists[cell]))
         return found

@@ -9,7 +9,7 @@ graph. Its paths from the first to the last layer are the schemes, each one once
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -19,12 +19,7 @@ from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.cell_divisions import ZERO, Blocks, divisions
 from cellcolor.solvers.cpsat.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block, Painting
-from cellcolor.solvers.cpsat.shown_colors import (
-    Choices,
-    ShownColors,
-    choices_with,
-    shown_in_cell,
-)
+from cellcolor.solvers.cpsat.shown_colors import Choices, ShownColors, choices_with, shown_in_cell
 from cellcolor.union_find import UnionFind
 
 MOST_STEPS = 1_000_000
@@ -95,8 +90,8 @@ class Frontier:
         ]
         self._needed = cache(self._needed_now)
         self._divisions = cache(self._divisions_now)
-        # For each layer, for each front in it, its steps: a division of the next cell, and the
-        # number of the front that it leads to. Steps that lead to no scheme are left out.
+        # By layer and front its steps: a division of the next cell, and the number of the front
+        # that it leads to. Steps that lead to no scheme are left out.
         self._steps: list[list[list[tuple[Blocks, int]]]] = []
         ends = self._build()
         # For each front of a layer, the last one first, how many schemes are reached from it.
@@ -125,11 +120,8 @@ class Frontier:
                 chosen.pop()
 
     def _painting(self, chosen: Sequence[Blocks]) -> Painting:
-        of_cell = dict(zip(self._order, chosen, strict=True))
-        return [
-            [Block(color, set(darts)) for color, darts in of_cell[cell]]
-            for cell in range(len(self._order))
-        ]
+        of_cell = sorted(zip(self._order, chosen, strict=True))
+        return [[Block(color, set(darts)) for color, darts in blocks] for _, blocks in of_cell]
 
     def _build(self) -> int:
         """Find all fronts, layer by layer; the number of fronts in the last one."""
@@ -223,10 +215,8 @@ class Frontier:
         self, cell: int, known: tuple[int | None, ...]
     ) -> list[tuple[Blocks, list[ShownColors]]]:
         """Every way to divide a cell, with the ways in which its zeros can show colors."""
-        found: Iterator[Blocks]
-        if cell in self._given:
-            found = iter([self._given[cell]])
-        else:
+        found: Iterable[Blocks] = [self._given[cell]] if cell in self._given else ()
+        if not found:
             found = divisions(self._graph, cell, known, self._can_be_drawn, self._deadline)
         return [
             (blocks, shown_in_cell(self._graph.loops[cell], blocks))
@@ -236,18 +226,18 @@ class Frontier:
 
 def _order(graph: DartGraph, given: Collection[int]) -> list[int]:
     """The given cells, and then the others in an order with few open darts."""
+    around = [[graph.darts[graph.darts[d].twin].cell for d in own] for own in graph.lists]
     order = sorted(given)
     left = set(range(len(graph.lists))).difference(order)
     reached: set[int] = set()
     while left:
 
         def weight(cell: int) -> tuple[int, int, int]:
-            around = [graph.darts[graph.darts[dart].twin].cell for dart in graph.lists[cell]]
-            free = sum(other in left and other != cell for other in around)
-            return free, 2 * free - len(around), cell
+            free = sum(other in left and other != cell for other in around[cell])
+            return free, 2 * free - len(around[cell]), cell
 
         chosen = min(reached & left or left, key=weight)
         left.discard(chosen)
         order.append(chosen)
-        reached |= {graph.darts[graph.darts[dart].twin].cell for dart in graph.lists[chosen]}
+        reached.update(around[chosen])
     return order

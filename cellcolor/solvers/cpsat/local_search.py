@@ -54,8 +54,8 @@ it, and when that is taken back. The factor by which both grow with each move, s
 count less."""
 
 PAUSE = 20
-"""Moves in vain before a division is made of the nodes, which takes time by the size of the whole:
-in the beginning nearly every move gains something."""
+"""Moves in vain before a division is made of the nodes, which takes time: in the beginning nearly
+every move gains something."""
 
 
 class Recoloring:
@@ -65,7 +65,7 @@ class Recoloring:
         regions: the color regions of the cells.
         colors: of each node.
         rng: chooses the moves.
-        deadline: of getting ready, which takes time by the size of the graph.
+        deadline: of getting ready.
 
     Attributes:
         fewest: segments of the best division so far.
@@ -128,11 +128,9 @@ class Recoloring:
         self._painted.paint(painted)
 
     def _take_back(self) -> None:
-        before: dict[int, int] = {}
-        for node, region in reversed(self._journal):
-            before[node] = region
+        for node, _ in self._journal:
             self._price[node] += IN_VAIN * self._rise
-        self._painted.paint(before)
+        self._painted.paint(dict(reversed(self._journal)))
 
     def _change(self) -> None:
         """Pick a segment, lead its kernel or some of it away, and let neighbors absorb the rest."""
@@ -293,8 +291,7 @@ def recolor(
         painting: a canonical painting of it.
         enough: segments that are few enough.
         moves: for each segment, before nothing better is expected.
-        rings: of sectors in a cell. One leaves room enough in most cells. With none, each cell is
-            painted whole, which makes a move several times quicker.
+        rings: of sectors in a cell; with none, each cell is painted whole.
     """
     sectors = sector_graph(graph, rings)
     search = Recoloring(sectors, regions, sector_colors(sectors, painting), rng, deadline)

@@ -13,13 +13,7 @@ from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.cell_divisions import Blocks, Planarity
 from cellcolor.solvers.cpsat.dart_graph import dart_graph
 from cellcolor.solvers.cpsat.frontier import Frontier
-from cellcolor.solvers.cpsat.painting import (
-    Painting,
-    canonical,
-    division_of,
-    moved,
-    painting_of,
-)
+from cellcolor.solvers.cpsat.painting import Painting, canonical, division_of, moved, painting_of
 from cellcolor.solvers.interface import Options
 
 _COUNTING = 1 / 2

@@ -1,16 +1,16 @@
 """Segment plans: how many segments each color region gets, and which cells each of them touches.
 
-A plan is a relaxation of a division. It does not say how segments run; it only respects the pairs
-of segments that are known to be unable to pass each other (``conflicts``). So if there is no plan
-with n segments, no division of the surface has n segments (docs/bounds.md, "Segment
-plans"). A plan takes milliseconds where the model takes seconds. Terms:
+A plan is a relaxation of a division: it respects only the pairs of segments that are known to be
+unable to pass each other (``conflicts``). So if there is no plan with n segments, no division of
+the surface has n segments (docs/bounds.md, "Segment plans"). A plan takes milliseconds where the
+model takes seconds. Terms:
 
 - A **merged cell** consists of cells that nothing separates in any color (``merged_surface``).
 - A **separation** of two color regions: if a segment of the one region touches both ``ends``, no
   segment of the other region touches merged cells of two of the ``groups``.
 - Merged cells of a region are of one **kind** if the same separations name them in the same places.
-  A segment that touches one of a kind may then touch all of them, so the model has one literal for
-  each kind, not for each merged cell. What no separation names any segment of the region may touch.
+  A segment that touches one may touch all of them, so the model has one literal for each kind. What
+  no separation names any segment of the region may touch.
 - A region gets several **copies**, of which the plan uses as many as it has segments there. If it
   may have more segments than copies, nothing is asked of a plan that has: such a region touches all
   its merged cells, and no separation counts there.
@@ -18,6 +18,7 @@ plans"). A plan takes milliseconds where the model takes seconds. Terms:
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import combinations, product
 
@@ -37,9 +38,9 @@ MOST_LITERALS = 100_000
 """The most literals of a model, one for each copy and kind; beyond that the planner gives up."""
 
 MOST_SEPARATED = 200_000
-"""The most literals in the constraints of separations; beyond that the planner gives up. Around a
-cell with many leaf cells (cells with a single live dart) nearly all pairs of segments separate each
-other, and there the model has better bounds."""
+"""The most literals in the constraints of separations. Around a cell with many leaf cells (cells
+with a single live dart) nearly all pairs of segments separate each other, and there the model has
+better bounds."""
 
 MOST_SEPARATIONS = 200
 """The most separations to find in one plan; then a plan is made that respects them."""
@@ -83,10 +84,10 @@ class Planner:
         # grown over all. So a plan need not tell them apart.
         own = {cell.id: frozenset(cell.colors) for cell in instance.cells}
         self._merged = merge_cells(instance, own)
-        self._regions_of: dict[int, list[int]] = {}
+        self._regions_of: dict[int, list[int]] = defaultdict(list)
         for number, (_, cells) in enumerate(regions):
             for merged_cell in sorted(self._held(cells)):
-                self._regions_of.setdefault(merged_cell, []).append(number)
+                self._regions_of[merged_cell].append(number)
         self._pairs: dict[tuple[int, int], RegionPair] = {}
         self._separations: dict[tuple[int, int], list[Separation]] = {}
         # The segments of the last plan, with the kinds that they touch.
@@ -100,7 +101,7 @@ class Planner:
             solve: runs a model, within limits.
 
         Returns:
-            A plan, or None if it is proved that there is none.
+            None if it is proved that there is none.
 
         Raises:
             Undecided: the model would be too large, or the limits came first.
@@ -111,15 +112,12 @@ class Planner:
         kinds = self._kinds(separated)
         while True:
             copies = [min(own, most) for own in self._copies]
-            if (
-                sum(n * len({*own.values()}) for n, own in zip(copies, kinds, strict=True))
-                > MOST_LITERALS
-                or sum(
-                    copies[ends[0][0]] * copies[groups[0][0]] * (2 + len(groups))
-                    for ends, groups in separated
-                )
-                > MOST_SEPARATED
-            ):
+            literals = sum(n * len({*own.values()}) for n, own in zip(copies, kinds, strict=True))
+            in_separations = sum(
+                copies[ends[0][0]] * copies[groups[0][0]] * (2 + len(groups))
+                for ends, groups in separated
+            )
+            if literals > MOST_LITERALS or in_separations > MOST_SEPARATED:
                 raise Undecided
             built = _PlanModel(segments, copies, most, kinds, self._last)
             built.add_cover(self._demands(kinds))
@@ -135,12 +133,11 @@ class Planner:
                 break
             for region in beyond:
                 self._copies[region] += 1
+        true = solver.boolean_value
         self._last = {
-            segment: {
-                kind for kind, own in built.touched[segment].items() if solver.boolean_value(own)
-            }
+            segment: {kind for kind, own in built.touched[segment].items() if true(own)}
             for segment, literal in built.in_use.items()
-            if solver.boolean_value(literal)
+            if true(literal)
         }
         return self._read(kinds)
 
@@ -198,11 +195,11 @@ class Planner:
         self, separated: Iterable[tuple[list[_Named], list[_Named]]]
     ) -> list[dict[int, int]]:
         """For each region its merged cells that separations name, with the first of their kind."""
-        places: list[dict[int, list[int]]] = [{} for _ in self._regions]
+        places: list[dict[int, list[int]]] = [defaultdict(list) for _ in self._regions]
         named = (own for ends, groups in separated for own in (*ends, *groups))
         for number, (region, merged_cells) in enumerate(named):
             for merged_cell in merged_cells:
-                places[region].setdefault(merged_cell, []).append(number)
+                places[region][merged_cell].append(number)
         kinds: list[dict[int, int]] = []
         for own in places:
             first: dict[tuple[int, ...], int] = {}
@@ -221,15 +218,16 @@ class Planner:
             for merged_cell, regions in self._regions_of.items()
         )
         demands = [dict(key) for key in different]
-        lying_in: dict[int, set[int]] = {}
+        lying_in: dict[int, set[int]] = defaultdict(set)
         for number, own in enumerate(demands):
             for region in own:
-                lying_in.setdefault(region, set()).add(number)
-        implied: set[int] = set()
-        for number, own in enumerate(demands):
-            for other in set.intersection(*(lying_in[region] for region in own)) - {number}:
-                if all(demands[other][region] in (None, kind) for region, kind in own.items()):
-                    implied.add(other)
+                lying_in[region].add(number)
+        implied = {
+            other
+            for number, own in enumerate(demands)
+            for other in set.intersection(*(lying_in[region] for region in own)) - {number}
+            if all(demands[other][region] in (None, kind) for region, kind in own.items())
+        }
         return [own for number, own in enumerate(demands) if number not in implied]
 
     def _read(self, kinds: Sequence[Mapping[int, int]]) -> SegmentPlan:
@@ -269,14 +267,12 @@ class _PlanModel:
     """The CP-SAT model of plans with an exact number of segments.
 
     Args:
-        segments: how many segments a plan has.
         copies: how many segments of each region the plan tells apart.
         most: how many segments a region may have at most, as many as its copies or more.
         kinds: of each region.
         last: the segments of the last plan with the kinds that they touch, as a hint.
 
     Attributes:
-        model: the model.
         in_use: for every copy: it is a segment of the plan.
         beyond: for every region that may have more segments than copies: it has.
         touched: for every copy and kind: the segment touches that kind.

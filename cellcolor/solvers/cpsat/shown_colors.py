@@ -64,7 +64,7 @@ def choices_with(
     """The choices that are left when one more cell is painted; none if its edges rule out all.
 
     Args:
-        before: the choices without the cell: colors of the zeros, and clauses.
+        before: the choices without the cell.
         ways: to show colors in it.
         open_darts: those towards the cells that are still not painted.
     """
@@ -85,12 +85,7 @@ def choices_with(
 
 
 def _clauses(graph: DartGraph, cell: int, own: ShownColors, shown: ShownColors) -> Iterable[Clause]:
-    """What the zeros of a cell have to heed.
-
-    Args:
-        own: the colors of its zeros.
-        shown: those of all zeros, also of cells painted before.
-    """
+    """What the zeros of a cell have to heed; ``shown`` are the colors of those of all cells."""
     for loop in graph.loops[cell]:
         for dart, following in pairwise((*loop, loop[0])):
             if dart != following and dart in own and following in own:
@@ -143,9 +138,8 @@ def _gap_colors(
     """The colors before and after each dart in state 0 of a loop.
 
     Args:
-        loop: the darts, in cyclic order.
         color_of: the color of each dart in state 1.
-        otherwise: the color that all of them show if the loop has no dart in state 1.
+        otherwise: the color that all show if the loop has no dart in state 1.
     """
     met = [color_of[dart] for dart in loop if dart in color_of] or [otherwise]
     found = {}

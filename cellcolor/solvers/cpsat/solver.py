@@ -22,21 +22,9 @@ from cellcolor.data.solution import ModelSize, Seam, count_segments
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import color_regions, greedy_independent_set
-from cellcolor.solvers.cpsat.dart_graph import (
-    DartGraph,
-    dart_graph,
-    seam_places,
-    split,
-    with_strands,
-)
+from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph, seam_places, split
 from cellcolor.solvers.cpsat.optimal_schemes import OptimalSchemes
-from cellcolor.solvers.cpsat.painting import (
-    Block,
-    Painting,
-    canonical,
-    division_of,
-    painting_of,
-)
+from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, division_of, painting_of
 from cellcolor.solvers.cpsat.part import Part, conflict_certificate
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
 from cellcolor.solvers.interruptible import Runner
@@ -140,12 +128,10 @@ class _Search:
             start = division_of(*self._start, self._options.strands)
             if count_segments(start) < count_segments(division):
                 graph, division = self._start[0], start
-        notes = {note for part in self._parts for note in part.notes}
+        notes = tuple(sorted({note for part in self._parts for note in part.notes}))
         sizes = [part.model_size for part in self._parts if part.model_size is not None]
         whole = ModelSize(sum(s.variables for s in sizes), sum(s.constraints for s in sizes))
-        return Answer(
-            division, graph.seams, self._bounds(), tuple(sorted(notes)), whole if sizes else None
-        )
+        return Answer(division, graph.seams, self._bounds(), notes, whole if sizes else None)
 
     def _each(self, step: Callable[..., None], share: float) -> None:
         """One step of each open part, in a share of the time that is left.
@@ -184,7 +170,8 @@ class _Search:
             names = [(whole.get(dart, dart), strand) for (dart, strand), *_ in graph.darts]
             for cell, blocks in zip(part.cells, painting, strict=True):
                 found[cell] = [(b.color, [names[dart] for dart in b.darts]) for b in blocks]
-        graph = self._whole_graph(with_strands(self._places, widths.values()))
+        seams = [replace(seam, strands=widths[seam.id]) for seam in self._places]
+        graph = self._whole_graph(seams)
         painting = [
             [
                 Block(color, {graph.number_of[name] for name in names})
@@ -207,24 +194,19 @@ class _Search:
             apart = greedy_independent_set(color_regions(self._instance))
             return (Bound("strangers", len(apart), "surface"),)
         certificate = conflict_certificate(self._parts)
+        document = None if certificate is None else certificate.to_document()
         by = {part.by for part in self._parts}
+        separated = sum(part.surface_bound for part in self._parts)
         bounds = [
             Bound("cover", sum(part.cover_bound for part in self._parts), "surface"),
-            Bound(
-                "conflicts",
-                sum(part.surface_bound for part in self._parts),
-                "surface",
-                None if certificate is None else certificate.to_document(),
-            ),
+            Bound("conflicts", separated, "surface", document),
         ]
         surface = sum(part.proved_for_surface for part in self._parts)
         bound = sum(part.bound for part in self._parts)
         if "model" in by:
-            bounds.append(Bound("crossings", surface, "surface"))
-            bounds.append(Bound("model", bound, "strands"))
+            bounds += [Bound("crossings", surface, "surface"), Bound("model", bound, "strands")]
         elif "exact" in by:
-            bounds.append(Bound("exact", surface, "surface"))
-            bounds.append(Bound("exact", bound, "strands"))
+            bounds += [Bound("exact", surface, "surface"), Bound("exact", bound, "strands")]
         return tuple(bounds)
 
     def _report(self) -> None:

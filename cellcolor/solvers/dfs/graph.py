@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 
 from cellcolor.data.cells_and_edges import DartName, strand_of, twin
 from cellcolor.data.instance import Instance
@@ -56,15 +57,11 @@ class Graph:
     """The cells of an instance, every live edge with so many parallel strands."""
 
     def __init__(self, instance: Instance, strands: int) -> None:
-        self.instance = instance
-        self._strands = strands
+        self.instance, self._strands = instance, strands
         self._loops = instance.live_loops
         self._last_edge = max((edge.id for edge in instance.edges), default=0)
-        next_id = self._last_edge + 1
-        self._first_seam: list[int] = []
-        for loops in self._loops:
-            self._first_seam.append(next_id)
-            next_id += max(0, len(loops) - 1)
+        seams = (max(0, len(loops) - 1) for loops in self._loops)
+        self._first_seam = list(accumulate(seams, initial=self._last_edge + 1))
 
     def parts(self) -> list[list[int]]:
         """The connected parts of the graph, the cells of each in the order in which to solve them.
@@ -95,8 +92,8 @@ class Graph:
     def sufficient_seam_strands(self, cell: int) -> list[int]:
         """How many strands each seam of a cell needs so that no division is lost.
 
-        With two loops it is half their darts minus one. With more loops, each seam needs half the
-        darts of the whole cell, in which the strands of earlier seams count on both sides.
+        With two loops it is half their darts minus one. With more, each seam needs half the darts
+        of the whole cell, in which the strands of earlier seams count on both sides.
         """
         counts = [self._strands * len(loop) for loop in self._loops[cell]]
         total = sum(counts)

@@ -47,7 +47,7 @@ class DepthFirstSearch:
     """The depth-first search of one connected part of the graph.
 
     Args:
-        cells: the cells of the part, in the order in which they are solved.
+        cells: those of the part, in the order in which they are solved.
 
     Attributes:
         budget: the most that a painting may cost; lower it while the search runs to prune.
@@ -58,11 +58,7 @@ class DepthFirstSearch:
         self.budget: float = math.inf
 
     def paintings(self) -> Iterator[Painting]:
-        """Every complete painting within the budget.
-
-        Raises:
-            OutOfTime: the deadline has passed.
-        """
+        """Every complete painting within the budget."""
         trail = [(0, iter([Painting()]))]
         while trail:
             self.deadline.check()
@@ -221,14 +217,6 @@ def _regions(instance: Instance, part: Sequence[int]) -> dict[tuple[int, int], i
     return region
 
 
-def _bits(of: int) -> Iterator[int]:
-    """The places of the bits of a number."""
-    while of:
-        bit = of & -of
-        of ^= bit
-        yield bit.bit_length() - 1
-
-
 def _hitting(sets: frozenset[int], deadline: Deadline) -> int:
     """The size of a smallest hitting set, one bit or more of each bit set, by branch and bound."""
     best = len(sets)
@@ -249,5 +237,6 @@ def _hits(sets: frozenset[int]) -> Iterator[frozenset[int]]:
     """For each bit of the smallest set, the sets that it does not hit."""
     sets = frozenset(s for s in sets if not any(t != s and t & s == t for t in sets))
     smallest = min(sets, key=lambda s: (s.bit_count(), s))
-    for place in _bits(smallest):
-        yield frozenset(s for s in sets if not s >> place & 1)
+    for place in range(smallest.bit_length()):
+        if smallest >> place & 1:
+            yield frozenset(s for s in sets if not s >> place & 1)

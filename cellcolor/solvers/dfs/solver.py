@@ -24,9 +24,7 @@ class ReferenceSolver:
     """
 
     abilities = Abilities(
-        search_spaces=("paper", "surface"),
-        several_loops=True,
-        optimal_schemes=True,
+        search_spaces=("paper", "surface"), several_loops=True, optimal_schemes=True
     )
     search: type[DepthFirstSearch] = DepthFirstSearch
     bound_before: str | None = None
@@ -76,8 +74,7 @@ class ReferenceSolver:
         for part in parts:
             for _ in part.improve():
                 pass
-        minimum = sum(part.cost or 0 for part in parts)
-        if minimum != segments:
+        if (minimum := sum(part.cost or 0 for part in parts)) != segments:
             raise ValueError(f"the minimum is {minimum} segments, not {segments}")
         # Parts that no live edge connects are painted independently: one after the other, too.
         trail: list[Iterator[_Blocks]] = [iter([{}])]
@@ -109,8 +106,7 @@ class _Part:
     Attributes:
         cost: the number of segments of the best division so far, None when there is none.
         bound: no division has fewer.
-        blocks: the best division.
-        seams: what its darts refer to.
+        blocks: the best division; its darts refer to ``seams``.
     """
 
     def __init__(
@@ -120,24 +116,17 @@ class _Part:
         self.cost: int | None = None
         self.blocks: _Blocks = {}
         self.seams: list[Seam] = []
-        self.bound = self._first_bound()
-
-    def _first_bound(self) -> int:
-        """What is known of an unpainted graph; 1 if there is no time to find it."""
         try:
-            return self._search(0)[0].least(Painting())
+            self.bound = self._search(0)[0].least(Painting())
         except OutOfTime as error:
             if isinstance(error, KeyboardInterrupt):
                 raise
-            return 1
+            self.bound = 1
 
     def improve(self) -> Iterator[None]:
         """Search until the minimum is found; yields whenever there is a better division.
 
         Seams get one strand more each time until they have enough of them or the bound is met.
-
-        Raises:
-            OutOfTime: the deadline has passed.
         """
         strands = (n for cell in self._cells for n in self._graph.sufficient_seam_strands(cell))
         for seam_strands in range(max(strands, default=0) + 1):

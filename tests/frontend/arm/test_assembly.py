@@ -187,12 +187,6 @@ def test_xacro_is_refused_with_the_command(text: str) -> None:
         parse_urdf(text, Path("some/arm.urdf.xacro"))
 
 
-def test_what_xacro_has_expanded_is_read() -> None:
-    comment = "<!-- made by xacro: <xacro:arm a='${b}'/> -->"
-    text = ARM.replace('<robot name="ur5">', f'<robot name="ur5" xmlns:xacro="http://x">{comment}')
-    assert load(parse_urdf(text, Path("arm.urdf"))).joints == 6
-
-
 def test_setups_of_before_are_written_as_before() -> None:
     """Fingerprints of surfaces have the setup in them: new keys stand there only when given."""
     setup = Setup.read(ROBOTS / "ur5_polishing.toml")

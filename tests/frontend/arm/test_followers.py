@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 from shipped import ROBOTS
 
@@ -64,17 +63,3 @@ def test_a_follower_of_a_joint_that_moves_can_stand_still() -> None:
     robot = load(tool=finger, fixed_joints={"finger": 0.1})
     assert robot.joint_names == load().joint_names
     assert [body.link for body in robot.bodies].count("finger_link") == 1
-
-
-def test_what_follows_a_fixed_joint_stands_at_its_offset() -> None:
-    fixed = '<joint name="weld" type="fixed"><parent link="tool_body"/><child link="w"/></joint>'
-    mimic = 'joint="weld" multiplier="3" offset="0.2"'
-    finger = joint("finger", "w", mimic, "prismatic", axis="1 0 0")
-    robot = load(tool=fixed + '<link name="w"/>' + finger)
-    (ball,) = [body for body in robot.bodies if body.link == "finger_link"]
-    (zero,) = [
-        body
-        for body in load(tool=(fixed + '<link name="w"/>' + finger).replace('"0.2"', '"0"')).bodies
-        if body.link == "finger_link"
-    ]
-    assert np.linalg.norm(ball.start - zero.start) == pytest.approx(0.2)

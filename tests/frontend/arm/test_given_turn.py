@@ -11,21 +11,18 @@ import pytest
 from bent_tools import ACROSS, BENT, STRAIGHT, tip_frame, tip_frames
 from hypothesis import given
 from hypothesis import strategies as st
-from independent import set_distance, wrapped
+from independent import wrapped
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.eaik import EaikKinematics
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import (
-    angle_about,
     forward,
     task_determinant,
     tip_jacobian,
-    turned_about,
 )
 from cellcolor.frontend.arm.robot import GIVEN_TURN, Robot
 from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at
-from cellcolor.frontend.arm.ur import BRANCHES as UR_BRANCHES
 from cellcolor.frontend.arm.ur import UrKinematics
 from cellcolor.frontend.setup import RobotFiles, Turn
 
@@ -73,22 +70,6 @@ def test_the_tool_points_as_far_to_the_goal_as_it_can(
     assert across @ wanted >= (others @ wanted).max() - 1e-5 * length
 
 
-@given(unit, unit, st.floats(-3.1, 3.1))
-def test_an_angle_about_the_tool_is_what_it_was_turned_by(
-    direction: tuple[float, ...], other: tuple[float, ...], angle: float
-) -> None:
-    z = np.array([direction]) / np.linalg.norm(direction)
-    first = np.cross(z, np.array([other]))
-    if np.linalg.norm(first) < 1e-3:
-        return
-    second = turned_about(z, first, np.array([angle]))
-    assert angle_about(z, first, second)[0] == pytest.approx(angle, abs=1e-9)
-    # By the right-hand rule about the tool's z axis, as scipy's rotation vectors have it.
-    from scipy.spatial.transform import Rotation
-
-    assert np.allclose(Rotation.from_rotvec(angle * z[0]).apply(first[0]), second[0], atol=1e-12)
-
-
 # --- solutions ----------------------------------------------------------------------------------
 
 
@@ -107,24 +88,6 @@ def test_calibrated_arms_have_whole_solutions_too(family: str) -> None:
         for each in own:
             off = tip_frame(robot.model, each).homogeneous - pose.homogeneous
             assert np.abs(off).max() < 3e-9
-
-
-@pytest.mark.parametrize(
-    ("tool", "count"),
-    [*((tool, 40) for tool in TOOLS), pytest.param("bent", 5000, marks=pytest.mark.slow)],
-)
-@pytest.mark.parametrize(("family", "arm"), [*ARMS, ("eaik", "irb120")])
-def test_the_same_whole_solutions_as_ssik(family: str, arm: str, tool: str, count: int) -> None:
-    pytest.importorskip("ssik")
-    from solution_sets import Ssik  # only here: ssik may be missing
-
-    robot, kinematics = made(family, arm, tool)
-    q = np.random.default_rng(6).uniform(-np.pi, np.pi, (count, 6))
-    poses, theirs_of, solutions = tip_frames(robot.model, q), Ssik(robot), 0
-    for ours, *pose in zip(found(kinematics.solve_pose(*poses)), *poses, strict=True):
-        assert set_distance(ours, theirs_of.whole_solutions(*pose)) < 1e-5
-        solutions += len(ours)
-    assert solutions >= 3.7 * count
 
 
 def test_only_one_branch_is_the_same_as_all_of_them() -> None:
@@ -160,38 +123,7 @@ def test_a_branch_keeps_its_name_where_the_determinant_is_not_zero(family: str, 
 # --- conditioning -------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("family", "arm"), ARMS)
-def test_reach_is_what_no_configuration_exceeds(family: str, arm: str) -> None:
-    robot, kinematics = made(family, arm, "bent")
-    q = np.random.default_rng(2).uniform(-np.pi, np.pi, (20_000, 6))
-    far = np.linalg.norm(forward(robot, q).tip - kinematics.viewpoints[0], axis=1).max()
-    assert 0.97 * kinematics.reach < far <= kinematics.reach
-
-
 # --- the set of turns ---------------------------------------------------------------------------
-
-
-def test_each_turn_of_a_set_has_its_own_branches() -> None:
-    robot, own = made("ur", "ur5e", "bent")
-    points = np.array([[0.4, 0.1, 0.2], [0.3, -0.3, 0.3]])
-    down = np.tile([0.0, 0.0, -1.0], (2, 1))
-    rule = Turn(along=(1, 0, 0), turns_deg=(0.0, 90.0, -45.0))
-    several = TurnedKinematics(UrKinematics, robot, FILES, rule)
-    assert len(several.branches) == len(set(several.branches)) == 24
-    assert several.branches[0] == "turn 0° shoulder-left elbow-up wrist-unflipped"
-    assert several.branches[8] == "turn 90° shoulder-left elbow-up wrist-unflipped"
-    assert several.branches[16] == "turn -45° shoulder-left elbow-up wrist-unflipped"
-    every = several.solve(points, down)
-    # About a tool that points down, 90 degrees lead from x to -y as seen in the world.
-    half = math.sqrt(0.5)
-    for number, x in enumerate([(1, 0, 0), (0, -1, 0), (half, half, 0)]):
-        expected = own.solve_pose(points, down, np.tile(np.array(x, dtype=float), (2, 1)))
-        part = every[:, 8 * number : 8 * number + 8]
-        assert np.allclose(part, expected, atol=1e-9, equal_nan=True)
-        for branch in range(8):
-            one = several.solve(points, down, np.full(2, 8 * number + branch))
-            assert np.allclose(one[:, 0], expected[:, branch], atol=1e-9, equal_nan=True)
-    assert own.branches == UR_BRANCHES
 
 
 # --- refusals -----------------------------------------------------------------------------------

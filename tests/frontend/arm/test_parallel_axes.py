@@ -10,7 +10,7 @@ import dh_arms
 import numpy as np
 import pinocchio as pin
 import pytest
-from bent_tools import BENT, tip_frame, tip_frames, tool
+from bent_tools import BENT, tip_frame, tip_frames
 from hypothesis import given
 from hypothesis import strategies as st
 from independent import kinematics_apart, wrapped
@@ -19,10 +19,9 @@ from vertex_minima import vertex_minimum
 
 import cellcolor
 from cellcolor.arrays import Array
-from cellcolor.configurations.matching import stays_within
 from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
-from cellcolor.frontend import BuildResult, Scene, Setup, build_surface
+from cellcolor.frontend import BuildResult, Scene, build_surface
 from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
 from cellcolor.frontend.arm.kinematics import (
     forward,
@@ -40,10 +39,7 @@ from cellcolor.frontend.arm.robot import (
 from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.reach.smooth import Measure
-from cellcolor.frontend.reach.validity import turned_into_limits
 from cellcolor.frontend.setup import RobotFiles, Turn
-from cellcolor.pictures.arm import draw_arm
 from examples import examples
 
 FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")
@@ -79,7 +75,7 @@ def arm(order: str, seed: int) -> tuple[Robot, InverseKinematics]:
             text = text.replace(f'"j{number}" type="revolute"', f'"j{number}" type="prismatic"')
     slides, turn_given = "P" in order, order in GIVEN
     out = 0.05 if turn_given else random.uniform(0.2, 0.4)
-    fixed = parse_urdf(tool((f"{out} -0.02 0.1", "0 0 0.8")), "tool.urdf")
+    fixed = parse_urdf(dh_arms.tool_of(f"{out} -0.02 0.1", "0 0 0.8"), "tool.urdf")
     whole = parse_urdf(text, "arm.urdf")
     robot = load_robot(whole, "flange", fixed, "tool_tip", len(order), prismatic=int(slides))
     if turn_given:
@@ -133,14 +129,6 @@ def test_poses_jacobians_torques_and_measures_are_pinocchios(order: str) -> None
     assert kinematics_apart(robot, configurations(robot, 20, 1)) < 1e-9
 
 
-@every_order
-def test_reach_is_what_no_configuration_exceeds(order: str) -> None:
-    robot, kinematics = arm(order, 6)
-    poses, first = forward(robot, configurations(robot, 20_000, 2)), int(robot.turning[0])
-    far = np.hypot(*(poses.tip - poses.origin[:, first + 1])[:, :2].T).max()
-    assert 0.98 * kinematics.reach < far <= kinematics.reach + 1e-12
-
-
 def test_only_points_in_the_plane_have_solutions() -> None:
     robot, kinematics = arm("RR", 1)
     tips, directions, _ = tip_frames(robot.model, configurations(robot, 1, 1))
@@ -153,99 +141,12 @@ def test_only_points_in_the_plane_have_solutions() -> None:
     assert np.isnan(kinematics.solve(tips + np.array([2.0, 0, 0]), directions)).all()
 
 
-def test_only_turning_joints_are_modulo_full_circles() -> None:
-    robot, _ = arm("RRPR", 3)
-    robot.lower[:], robot.upper[:] = [-1, -1, 0.0, -1], [6, 6, 0.2, 6]
-    turned = turned_into_limits(robot, np.array([[-2.0, 7.0, -0.1, 0.0], [0.0, 0.0, 0.3, -6.0]]))
-    assert turned[:, 2].tolist() == [-0.1, 0.3]
-    assert turned[0] == pytest.approx([2 * np.pi - 2, 7 - 2 * np.pi, -0.1, 0])
-
-    def fits(low: float, high: float, start: float = 0.1) -> bool:
-        at, one = np.array([0.0, 0.0, start, 0.0]), np.array([0.0, 0.0, 1.0, 0.0])
-        limits, periods = (robot.lower, robot.upper), np.where(robot.slides, np.inf, 2 * np.pi)
-        return bool(stays_within(limits, at, low * one, high * one, periods))
-
-    assert fits(-0.1, 0.1) and not fits(-0.11, 0.0) and not fits(0.0, 0.11)
-    assert not fits(0.0, 0.0, start=0.1 + 2 * np.pi)
-
-
-def test_a_slide_as_far_as_the_reach_counts_as_a_radian() -> None:
-    policy = Setup.read(ROBOTS / "cobra600_dispensing.toml").continuity
-    periods, units = np.array([2 * np.pi, np.inf]), np.array([1.0, 0.5])
-    measure = Measure(policy, 0.1, 0.0, periods, units)
-    first, second = np.array([[0.1, 7.0]]), np.array([[0.1 + 2 * np.pi, 0.0]])
-    assert measure.step(first, second) == pytest.approx([7.0 / 0.5])
-
-
 # --- the shipped arms -----------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
 def built() -> BuildResult:
     return build_surface(Scene.read(COBRA).varied(object={"target_vertices": 300}))
-
-
-def expected(points: Array, share: float) -> dict[str, Array]:
-    """Where each elbow gets, by trigonometry; NaN where rounding or thresholds could decide.
-
-    Arms of 325 and 275 mm; joint 1 turns by 50 degrees to either side, joint 2 by 88. Twice the
-    triangle of shoulder, elbow and tip, the task determinant, is at least a share of the square of
-    the reach.
-    """
-    out, around = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
-    cosine = (out**2 - 0.325**2 - 0.275**2) / (2 * 0.325 * 0.275)
-    bend = np.arccos(np.clip(cosine, -1, 1))
-    ahead = np.arctan2(0.275 * np.sin(bend), 0.325 + 0.275 * np.cos(bend))
-    area = 0.325 * 0.275 * np.sin(bend)
-    found = {}
-    for name, side in (("elbow-left", 1.0), ("elbow-right", -1.0)):
-        # An elbow on the left is ahead of the tip, seen turning to the left.
-        room = np.minimum(np.radians(50) - np.abs(around + side * ahead), np.radians(88) - bend)
-        room = np.where(np.abs(cosine) < 1, np.minimum(room, area - share * 0.36), -1.0)
-        found[name] = np.where(np.abs(room) < 1e-9, np.nan, (room > 0).astype(float))
-    return found
-
-
-def test_where_each_elbow_gets_is_what_trigonometry_says(built: BuildResult) -> None:
-    """By hand: 0.23 m to either side, 0.45 m in front, is one elbow's, so two segments.
-
-    Of the first the tip is 505 mm away, at 27.1 degrees, and the elbow 29.8 ahead: 57 to one side,
-    where joint 1 ends at 50, and 3 to the other.
-    """
-    sides = expected(np.array([[0.45, 0.23, 0.1], [0.45, -0.23, 0.1], [0.45, 0.0, 0.1]]), 0.02)
-    assert sides["elbow-left"].tolist() == [0, 1, 1] and sides["elbow-right"].tolist() == [1, 0, 1]
-    points = built.surface.vertices
-    known = expected(points, 0.02)
-    for branch, name in enumerate(built.branches):
-        sure = ~np.isnan(known[name])
-        valid = built.reasons[:, branch] == VALID
-        assert sure.sum() > 290 and np.array_equal(valid[sure], known[name][sure] == 1)
-    valid = np.argwhere(built.reasons == VALID)
-    slides = built.configurations[:, :, 2][tuple(valid.T)]
-    assert np.ptp(slides) > 0.07  # the joint does move, up and down with the part
-    for vertex, branch in valid[::11]:
-        pose = tip_frame(built.robot.model, built.configurations[vertex, branch])
-        assert np.abs(pose.translation - points[vertex]).max() < 1e-9
-        assert np.abs(pose.rotation - FLIP).max() < 1e-9  # x along x, z down
-    found = cellcolor.solve(built)
-    assert found.optimal and found.solution.proved_for_surface and found.segments == 2
-    vertex, branch = valid[0]
-    slide = 1000 * built.configurations[vertex, branch, 2]
-    assert any(f"{slide:.1f} mm" in note for note in draw_arm(built, vertex, branch).notes)
-
-
-@pytest.mark.parametrize("lift", [0.12, -0.11])
-def test_what_the_stroke_does_not_reach_fails_its_limits(lift: float) -> None:
-    """From 77 to 287 mm above the base: 387 less the tool's 100, less the stroke of 210."""
-    scene = Scene.read(COBRA).varied(object={"target_vertices": 200})
-    x, y, z = scene.placement.position_m
-    moved = build_surface(scene.moved(position_m=(x, y, z + lift)))
-    heights = moved.surface.vertices[:, 2]
-    beyond = (heights > 0.287) | (heights < 0.077)
-    assert 0 < beyond.sum() < len(heights)
-    said = moved.reasons[beyond][moved.reasons[beyond] != 1]
-    assert (said == moved.reason_names.index("joint limits")).all()
-    assert (moved.reasons[~beyond] == VALID).any()
 
 
 def test_the_kr6_is_solved_from_its_urdf_to_a_proven_minimum() -> None:
@@ -379,7 +280,10 @@ def test_axes_that_are_not_parallel_and_links_without_length_are_refused() -> No
         (("0 0 1", "0 0 0"), "no length"),
     ):
         with pytest.raises(InputError, match=said):
-            PlanarTwo(load_robot(whole, "flange", parse_urdf(tool(at), "t"), "tool_tip", 2), FILES)
+            PlanarTwo(
+                load_robot(whole, "flange", parse_urdf(dh_arms.tool_of(*at), "t"), "tool_tip", 2),
+                FILES,
+            )
 
 
 class Nameless(ScaraWithoutTurn):

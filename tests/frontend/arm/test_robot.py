@@ -49,29 +49,6 @@ def test_masses_and_limits_are_the_published_ones(robot: Robot) -> None:
     assert np.allclose(robot.upper, 2 * np.pi) and np.allclose(robot.lower, -2 * np.pi)
 
 
-def test_zero_pose_is_the_denavit_hartenberg_one_turned_by_pi(robot: Robot) -> None:
-    # Product of the six textbook transforms at zero, base turned by pi about z, tool along z6.
-    def transform(d: float, a: float, alpha: float) -> np.ndarray:
-        c, s = np.cos(alpha), np.sin(alpha)
-        return np.array([[1, 0, 0, a], [0, c, -s, 0], [0, s, c, d], [0, 0, 0, 1.0]])
-
-    table = [
-        (0.089159, 0, np.pi / 2),
-        (0, -0.425, 0),
-        (0, -0.39225, 0),
-        (0.10915, 0, np.pi / 2),
-        (0.09465, 0, -np.pi / 2),
-        (0.0823 + 0.1, 0, 0),
-    ]
-    expected = np.diag([-1.0, -1.0, 1.0, 1.0])
-    for row in table:
-        expected = expected @ transform(*row)
-    chain = np.eye(4)
-    for placement in robot.placement:
-        chain = chain @ placement
-    assert np.allclose(chain @ robot.tip, expected, atol=1e-12)
-
-
 def test_every_shape_collides(robot: Robot) -> None:
     shapes = sum(len(load_urdf(ROBOTS / file).shapes[link]) for file, link in _solid_links())
     assert robot.geometry.ngeoms == shapes == 7 * 3 + 1 + 1

@@ -4,27 +4,20 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Callable
 
 import numpy as np
 import pytest
-from reasons import Reason
 from world import PAIRS, World
 
 from cellcolor.arrays import Array, Mask
-from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, pairs_of, pairs_with
-from cellcolor.frontend.contact.obstacle import (
-    CylinderObstacle,
-)
-from cellcolor.frontend.contact.tip import HalfSpace
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.scene import Scene
+from cellcolor.frontend.scene import Ground
 
 CONTACT = 0.0005  # m; verdicts may differ nearer to contact than this
 EXEMPT = ("base_link", "shoulder_link")
@@ -45,9 +38,8 @@ def hits(robot: Robot, thing: Shape, joints: Array) -> Mask:
     return Contacts(pairs_with(robot, [thing]), robot)(joints)
 
 
-def hits_ground(robot: Robot, ground: HalfSpace, exempt: tuple[str, ...], joints: Array) -> Mask:
-    thing = ground.shape
-    pairs = [(body, thing, 0.0) for body in robot.bodies if body.link not in exempt]
+def hits_ground(robot: Robot, ground: Shape, exempt: tuple[str, ...], joints: Array) -> Mask:
+    pairs = [(body, ground, 0.0) for body in robot.bodies if body.link not in exempt]
     return Contacts(pairs, robot)(joints)
 
 
@@ -84,16 +76,6 @@ def test_a_forked_process_finds_the_same(robot: Robot, joints: Array) -> None:
     assert os.waitpid(child, 0)[1] == 0
 
 
-def test_an_obstacle_takes_away_what_it_hits(scene: Callable[..., Scene]) -> None:
-    wok = scene(target_vertices=500)
-    free = build_surface(wok)
-    post = CylinderObstacle(radius_m=0.03, height_m=0.3, position_m=(0.205, 0.005, 0.15))
-    blocked = build_surface(wok.with_obstacle(post))
-    changed = free.reasons != blocked.reasons
-    assert (blocked.reasons[changed] == Reason.OBSTACLE_COLLISION).all()
-    assert changed.sum() == blocked.report.candidates["obstacle collision"] > 100
-
-
 def tool_down(turn: float) -> Array:
     q = np.array([[turn, -1.2, 1.4, 0.0, -np.pi / 2, 0.0]])
     q[0, 3] = -np.pi / 2 - q[0, 1] - q[0, 2]
@@ -105,7 +87,7 @@ def test_tool_body_is_flat_and_ends_above_the_tip(robot: Robot) -> None:
     assert poses.tool_axis[0, 2] == pytest.approx(-1)
     tip, arm = poses.tip[0, 2], (*EXEMPT, "upper_arm_link")
     for above, hit in ((0.0099, False), (0.0101, True)):
-        ground = HalfSpace((0.0, 0.0, 1.0), tip + above)
+        ground = Ground(height_m=tip + above).half_space
         assert hits_ground(robot, ground, arm, tool_down(0.0))[0] == hit
 
 

@@ -15,8 +15,7 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.obstacle import BoxObstacle, SphereObstacle
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.parts.placement import Placement
-from cellcolor.frontend.parts.shapes import RectangleObject, disc_mesh
-from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.parts.shapes import RectangleObject
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Setup
 
@@ -91,34 +90,3 @@ def test_the_region_reaches_to_the_body_of_the_tool(robot: Robot) -> None:
     bare = replace(robot, bodies=tuple(body for body in robot.bodies if body.joint < 6))
     for arm, hit in ((robot, True), (bare, False)):
         assert Tip(arm, 0.002, [above.solid()], None).blocked(point, down) == hit
-
-
-def test_a_post_between_two_vertices_is_met(robot: Robot) -> None:
-    """Edges are free where points 0.1 mm apart are."""
-    flat, faces = disc_mesh(37, 0.0, 0)
-    vertices = 0.1 * np.column_stack([flat, np.zeros(len(flat))])
-    surface = Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (len(flat), 1)))
-    edges = surface.edges()
-    posts = [
-        SphereObstacle(kind="sphere", radius_m=0.004, position_m=place)
-        for place in ((0.021, 0.017, 0.0), (-0.05, 0.015, 0.006), (0.0, -0.0405, -0.004))
-    ]
-    tip = Tip(robot, RADIUS, [post.solid() for post in posts], None)
-    way = np.linspace(0, 1, 400)[:, None]
-
-    def distance(edge: Array) -> float:
-        """From the tool's upright axis on the edge to the nearest center."""
-        points = (1 - way) * vertices[edge[0]] + way * vertices[edge[1]]
-        found = []
-        for post in posts:
-            off = points - np.array(post.position_m)
-            off[:, 2] = np.maximum(np.maximum(off[:, 2], -off[:, 2] - SHAFT), 0.0)
-            found.append(np.linalg.norm(off, axis=1).min() - post.radius_m)
-        return min(found)
-
-    needed = np.array([distance(edge) for edge in edges])
-    free = tip.free_along(surface, edges)
-    assert free[needed > RADIUS].all()
-    assert not free[needed < RADIUS - 0.00065].any()
-    ends_free = ~tip.blocked(vertices, -surface.normals)[edges].any(axis=1)
-    assert (ends_free & ~free).any()

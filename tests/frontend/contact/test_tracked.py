@@ -14,10 +14,10 @@ from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.tip import (
     body_ends,
-    longest_steps,
     tracked_points,
     tracked_steps,
 )
+from examples import examples
 
 
 @pytest.fixture(scope="module")
@@ -27,6 +27,7 @@ def meshed(tmp_path_factory: pytest.TempPathFactory) -> Robot:
     return load_robot(package / "urdf" / "arm.urdf", "wrist_3_link", *files)
 
 
+@examples(15)
 @given(seed=st.integers(0, 2**32 - 1), far=st.sampled_from([1e-3, 0.1, 3.0]))
 def test_no_point_of_a_mesh_moves_farther_than_a_corner(
     meshed: Robot, seed: int, far: float
@@ -50,18 +51,3 @@ def test_no_point_of_a_mesh_moves_farther_than_a_corner(
             assert own <= moved[first : first + count].max() + 1e-9
         first += count
     assert first == len(tracked) == len(tracked_steps(meshed, 0.0, 0.0))
-
-
-def test_steps_of_solids_grow_with_the_margin_and_others_do_not(meshed: Robot) -> None:
-    """What is nearer than the margin is noticed, so half a step may be as much and 0.65 mm."""
-    bare, wide = tracked_steps(meshed, 0.0, 0.0), tracked_steps(meshed, 0.004, 0.01)
-    sharp = np.array([body.solid is not None for body in meshed.bodies if body.joint > 0])
-    of_solids = np.repeat(sharp, np.where(sharp, 8, 2))
-    assert bare[of_solids] == pytest.approx(0.0013)
-    assert wide[of_solids] == pytest.approx(0.0013 + 0.008)
-    tool = next(body for body in meshed.bodies if body.solid is None)
-    assert (bare[~of_solids] == longest_steps(np.array([tool.radius]))).all()
-    assert (wide[~of_solids] == bare[~of_solids]).all()
-    # Two links that both move come as much nearer as a step is long: their margin allows that much.
-    assert (tracked_steps(meshed, 0.004, 0.0) == bare).all()
-    assert tracked_steps(meshed, 0.004, 0.002)[of_solids] == pytest.approx(0.0013 + 0.002)

@@ -9,17 +9,14 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellcolor.errors import InputError
 from cellcolor.frontend.parts.mending import (
     crossing_pairs,
     cut_apart,
     filled,
     merged,
-    refuse_gaps,
 )
 from cellcolor.frontend.parts.repairing import mended
 from cellcolor.frontend.parts.shapes import disc_mesh
-from cellcolor.mesh.oriented import directed_edges
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 BALL = trimesh.creation.icosphere(subdivisions=2, radius=0.1)
@@ -92,30 +89,6 @@ def test_blocks_that_meet_in_an_edge_come_apart() -> None:
         assert mesh.is_watertight and mesh.volume == pytest.approx(0.001, rel=0.03)
 
 
-def test_a_sheet_through_a_ball_leaves_the_ball_whole() -> None:
-    """Three faces on a ring of edges: the two that go on straightest stay together."""
-    corners = np.concatenate([np.eye(3), -np.eye(3)])
-    faces = [(0, 1, 2), (1, 3, 2), (3, 4, 2), (4, 0, 2), (1, 0, 5), (3, 1, 5), (4, 3, 5), (0, 4, 5)]
-    round_ = trimesh.Trimesh(corners, faces, process=False).subdivide().subdivide()
-    ball = np.array(round_.vertices) / np.linalg.norm(round_.vertices, axis=1, keepdims=True)
-    ring = np.flatnonzero(np.abs(ball[:, 2]) < 1e-9)
-    ring = ring[np.argsort(np.arctan2(ball[ring, 1], ball[ring, 0]))]
-    count = len(ball)
-    sheet = []
-    for k in range(len(ring)):
-        after = (k + 1) % len(ring)
-        sheet += [(ring[k], ring[after], count + after), (ring[k], count + after, count + k)]
-    points = np.concatenate([ball, 1.3 * ball[ring]])
-    faces = np.concatenate([round_.faces, sheet])
-    assert (TriangleMesh(points, faces).triangles_at == 3).sum() == len(ring)
-    apart, new, _ = cut_apart(points, faces)
-    part = TriangleMesh(apart, new).parts()
-    sizes = sorted(np.bincount(part).tolist())
-    assert sizes == sorted([len(sheet), len(round_.faces)])
-    whole = trimesh.Trimesh(apart, new[part == np.argmax(np.bincount(part))], process=False)
-    assert whole.is_watertight
-
-
 @given(seeds, st.integers(4, 12))
 def test_a_plane_hole_is_filled_with_its_area(seed: int, count: int) -> None:
     """A polygon with a ring around: no filling without overlap has another area."""
@@ -136,42 +109,6 @@ def test_a_plane_hole_is_filled_with_its_area(seed: int, count: int) -> None:
     assert mesh.is_winding_consistent
     assert mesh.area_faces[len(fan) :].sum() == pytest.approx(shoelace)
     assert filled(points, fan, border * 0.999) == ([], 0)
-
-
-@given(seeds, st.floats(0.001, 0.999))
-def test_a_vertex_on_an_edge_that_only_a_flat_face_has_is_refused(seed: int, share: float) -> None:
-    """Without the flat face there would be a slit; one that nothing is beside is left out."""
-    rng = np.random.default_rng(seed)
-    face = int(rng.integers(len(FACES)))
-    a, b, c = FACES[face].tolist()
-    points = np.vstack([VERTICES, (1 - share) * VERTICES[a] + share * VERTICES[b]])
-    middle = len(VERTICES)
-    others = np.delete(FACES, face, axis=0)
-    faces = np.concatenate([others, [(a, middle, c), (middle, b, c), (a, b, middle)]])
-    with pytest.raises(InputError, match="T-vertex") as caught:
-        refuse_gaps(points, faces[:-1], faces[-1:])
-    place = [float(x) for x in str(caught.value.field)[len("faces near (") : -1].split(",")]
-    along = np.array(place) - VERTICES[a]
-    side = VERTICES[b] - VERTICES[a]
-    assert np.linalg.norm(np.cross(along, side)) < 1e-3 * side @ side
-    refuse_gaps(points, np.array([[a, b, c]]), np.array([[a, middle, middle]]))
-
-
-@given(seeds, st.integers(1, 40))
-def test_whatever_is_added_to_a_ball_comes_out_a_manifold(seed: int, more: int) -> None:
-    """Faces between any of its vertices, most of them right through it."""
-    rng = np.random.default_rng(seed)
-    near = rng.integers(len(FACES), size=more)
-    extra = np.array([rng.choice(len(VERTICES), 3, replace=False) for _ in range(more)])
-    extra[::2, :2] = FACES[near[::2], :2]  # every other one stands on an edge of the ball
-    try:
-        points, faces, _ = mended(
-            VERTICES, np.concatenate([FACES, extra]), longest_hole=1.0, least_share=0.0
-        )
-    except InputError as error:
-        assert "one-sided" in error.message or "T-vertex" in error.message
-        return
-    directed_edges(faces, len(points))  # refuses what is no oriented manifold
 
 
 def test_a_filling_that_folds_back_is_left_out() -> None:

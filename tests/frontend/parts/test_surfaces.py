@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,20 +14,14 @@ from scipy.spatial.transform import Rotation
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend import build_surface
 from cellcolor.frontend.parts.mesh_file import load_mesh
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import (
-    PipeObject,
-    RectangleObject,
     disc_mesh,
     grid_mesh,
     pipe,
-    rectangle,
     spherical_cap,
 )
-from cellcolor.frontend.parts.surface import Part
-from cellcolor.frontend.scene import Scene
 from examples import examples
 
 
@@ -89,14 +82,6 @@ def test_pipe() -> None:
     assert nearest.min() > 0.98
 
 
-def test_rectangle() -> None:
-    flat = rectangle(0.4, 0.2, *grid_mesh(0.4, 0.2, 500, 0.2, 2))
-    assert np.allclose(flat.vertices.min(axis=0), [-0.2, -0.1, 0])
-    assert np.allclose(flat.vertices.max(axis=0), [0.2, 0.1, 0])
-    mesh = trimesh.Trimesh(flat.vertices, flat.faces, process=False)
-    assert np.allclose(mesh.face_normals, [0, 0, 1]) and np.allclose(flat.normals, [0, 0, 1])
-
-
 @pytest.mark.parametrize("half_angle", [0.3, 1.134, np.pi / 2, 2.5])
 def test_cap(half_angle: float) -> None:
     cap = spherical_cap(0.2, half_angle, *disc_mesh(2000, 0.15, 3))
@@ -107,8 +92,8 @@ def test_cap(half_angle: float) -> None:
     mesh = trimesh.Trimesh(cap.vertices, cap.faces, process=False)
     assert ((mesh.face_normals * mesh.triangles_center).sum(axis=1) > 0).all()
     assert mesh.area == pytest.approx(2 * np.pi * 0.2**2 * (1 - np.cos(half_angle)), rel=0.01)
-    assert cap.vertex_areas().sum() == pytest.approx(mesh.area)
-    assert np.array_equal(cap.edges(), np.unique(np.sort(mesh.edges_unique, axis=1), axis=0))
+    assert cap.mesh.vertex_areas.sum() == pytest.approx(mesh.area)
+    assert np.array_equal(cap.mesh.edges, np.unique(np.sort(mesh.edges_unique, axis=1), axis=0))
 
 
 def test_placement_is_extrinsic_xyz() -> None:
@@ -118,19 +103,6 @@ def test_placement_is_extrinsic_xyz() -> None:
     placed = cap.placed(place)
     assert np.allclose(placed.vertices, turn.apply(cap.vertices) + np.array([1, 2, 3]))
     assert np.allclose(placed.normals, turn.apply(cap.normals))
-
-
-@pytest.mark.parametrize(
-    ("part", "area"),
-    [
-        (PipeObject(radius_m=0.083, length_m=0.315, arc_rad=3.0, target_vertices=300), 0.0784),
-        (RectangleObject(size_x_m=0.3, size_y_m=0.2, target_vertices=300), 0.06),
-    ],
-)
-def test_other_objects_in_scenes(scene: Callable[..., Scene], part: Part, area: float) -> None:
-    report = build_surface(scene(position_m=(0.45, 0.1, 0.1)).with_object(part)).report
-    assert report.area_m2 == pytest.approx(area, rel=0.01)
-    assert 200 < report.vertices < 400 and report.reachable > 100
 
 
 TETRA = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)

@@ -36,7 +36,7 @@ def checked(
 
     It may move by 10 mm.
     """
-    edges = surface.edges()
+    edges = surface.mesh.edges
     branches = np.zeros(len(edges), dtype=np.intp)
     ends = reach * surface.vertices[None, :, None]
 
@@ -57,7 +57,7 @@ def test_a_gap_on_the_edge_is_found_and_nothing_else(pieces: int, reach: float) 
         return np.abs(points[:, 0] - 0.21) > 0.01  # a strip without a vertex
 
     found = checked(surface, test, pieces, reach)
-    across = (surface.vertices[surface.edges()][:, :, 0] < 0.21).sum(axis=1) == 1
+    across = (surface.vertices[surface.mesh.edges][:, :, 0] < 0.21).sum(axis=1) == 1
     assert (found == ~across).all() and across.any()
     assert checked(surface, test, 1).all()  # nobody asks for a point
 
@@ -65,7 +65,7 @@ def test_a_gap_on_the_edge_is_found_and_nothing_else(pieces: int, reach: float) 
 def test_a_jump_is_no_link() -> None:
     """A body that is in two places on both sides of a point is not followed forever."""
     surface = plane()
-    edges = surface.edges()
+    edges = surface.mesh.edges
     branches = np.zeros(len(edges), dtype=np.intp)
 
     def test(points: Array, _: Array, __: Array) -> tuple[Array, Array]:
@@ -86,7 +86,7 @@ def test_no_body_moves_far_between_tested_points(name: str) -> None:
     """On links of a scene, one at a time; the bodies put in place by Pinocchio."""
     prepared = prepare(SCENES / f"{name}.toml")
     surface, robot = prepared.surface, prepared.robot
-    edges, random = surface.edges(), np.random.default_rng(5)
+    edges, random = surface.mesh.edges, np.random.default_rng(5)
     solutions = prepared.arm.inverse(surface.vertices, -surface.normals)
     found = prepared.judge(solutions.reshape(-1, 6))
     valid = (found.reasons == Reason.VALID).reshape(-1, 8)

@@ -80,7 +80,7 @@ def test_patch_and_collision_object_are_two_things(scene: Varied) -> None:
 def test_maximum_edge_length_of_a_scene_is_in_meters(tmp_path: Path) -> None:
     (tmp_path / "box.obj").write_text(obj(100 * BOX, OUTWARD))
     surface = load_mesh(tmp_path / "box.obj", 0.001, max_edge_m=0.03)
-    edges = surface.edges()
+    edges = surface.mesh.edges
     assert surface.lengths(edges).max() <= 0.03 and surface.vertices.max() == pytest.approx(0.1)
 
 

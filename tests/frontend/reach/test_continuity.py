@@ -7,14 +7,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from continuation import Follower
-from hypothesis import given
-from hypothesis import strategies as st
-from independent import shorter_way
 from reasons import Reason
 from shipped import shipped
 
 from cellcolor.arrays import Array
-from cellcolor.configurations.matching import farthest, stays_within
+from cellcolor.configurations.matching import farthest
 from cellcolor.data.surface import Crack
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.robot import Robot
@@ -44,22 +41,6 @@ def measure(policy: Continuity = POLICY) -> Measure:
     return Measure(policy, NEAR, lever=0.2)
 
 
-angles = st.lists(st.floats(-20, 20), min_size=6, max_size=6)
-
-
-@given(angles, angles, st.lists(st.integers(-2, 2), min_size=6, max_size=6))
-def test_a_step_is_modulo_full_circles(
-    first: list[float], second: list[float], circles: list[int]
-) -> None:
-    a, b = np.array(first), np.array(second)
-    step = farthest(a, b)
-    assert 0 <= step <= np.pi + 1e-9
-    assert farthest(a, b + 2 * np.pi * np.array(circles)) == pytest.approx(step, abs=1e-9)
-    # On the unit circle the chord tells the same angle.
-    chord = np.abs(np.exp(1j * a) - np.exp(1j * b)).max()
-    assert 2 * np.sin(step / 2) == pytest.approx(chord, abs=1e-6)
-
-
 class Plane:
     """A flat disc of seven vertices whose configurations are given as functions of the place."""
 
@@ -67,7 +48,7 @@ class Plane:
         flat, faces = disc_mesh(7, 0.0, 0)
         vertices = np.column_stack([flat, np.zeros(7)])
         self.surface = Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (7, 1)))
-        self.edges = self.surface.edges()
+        self.edges = self.surface.mesh.edges
         self.branches, self.determinant = branches, determinant
         every = np.arange(len(branches))
         configurations = np.stack([self.joints(vertices, np.full(7, b)) for b in every], axis=1)
@@ -98,12 +79,6 @@ class Plane:
         return link(self.surface, self.edges, self.candidates, measure(policy), None, self.probe)
 
 
-def test_fast_but_smooth_motion_is_linked_after_probing() -> None:
-    plane = Plane(lambda p: 1.9 * p[0])
-    assert farthest(*plane.candidates.configurations[[1, 0], 0]) > 1.1  # more than the bound
-    assert plane.linked().all() and plane.asked > 0
-
-
 def test_missing_configuration_on_the_way_is_seen_near_singularities_only() -> None:
     def gap(p: Array) -> float:
         return np.nan if 0.38 < p[0] < 0.46 else 0.0
@@ -112,18 +87,6 @@ def test_missing_configuration_on_the_way_is_seen_near_singularities_only() -> N
     near = Plane(gap, determinant=0.001)
     across = (near.surface.vertices[near.edges][:, :, 0] < 0.42).sum(axis=1) == 1
     assert (near.linked()[:, 0] == ~across).all()
-
-
-def test_ill_conditioned_point_on_the_way_is_not_linked() -> None:
-    plane = Plane(lambda _: 0.0, determinant=0.001)
-
-    def probe(points: Array, _: Array, branch: Array) -> tuple[Array, Array]:
-        good = (points[:, 0] < 0.38) | (points[:, 0] > 0.46)
-        return plane.joints(points, branch), np.where(good, 0.001, np.nan)
-
-    found = link(plane.surface, plane.edges, plane.candidates, measure(), None, probe)
-    across = (plane.surface.vertices[plane.edges][:, :, 0] < 0.42).sum(axis=1) == 1
-    assert (found[:, 0] == ~across).all()
 
 
 def spiral(p: Array) -> float:
@@ -207,23 +170,3 @@ def test_cracks_are_on_shared_colors_and_colors_are_injective(
         assert set(crack.colors) <= shared
     per_vertex = np.sort(around_wrist_singularities.node_color, axis=1)
     assert not ((per_vertex[:, 1:] == per_vertex[:, :-1]) & (per_vertex[:, 1:] >= 0)).any()
-
-
-@pytest.mark.parametrize(
-    ("lower", "upper", "first", "second", "fits"),
-    [
-        (-3.0, 3.0, 2.9, -2.9, False),  # the short way leads through pi
-        (-3.0, 4.0, 2.9, -2.9, True),  # it ends at 3.38
-        (-3.0, 3.0, -0.2, 0.3, True),
-        (-7.0, -5.0, 0.1, 0.4, True),  # both turned back once
-        (-6.3, 6.3, 3.1, -3.1, True),
-        (0.0, 6.2, 0.1, 6.1, False),  # the short way leads through 0
-    ],
-)
-def test_way_between_limits(
-    lower: float, upper: float, first: float, second: float, fits: bool
-) -> None:
-    low, high, still = np.full(6, lower), np.full(6, upper), (lower + upper) / 2
-    a, b = np.full(6, still), np.full(6, still)
-    a[3], b[3] = first, second
-    assert stays_within((low, high), a, *shorter_way(a, b)) == fits

@@ -94,16 +94,3 @@ def segments(scene: Scene) -> int:
 def test_the_minimum_of_the_box() -> None:
     """Three, as found with probes 0.02 mm apart, far closer than asked for here."""
     assert segments(box(20, slivers=True)) == 3
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("edge_mm", [8, 4, 2])
-def test_the_minimum_does_not_hang_on_the_size_of_triangles(edge_mm: float) -> None:
-    assert segments(box(edge_mm, slivers=True)) == 3
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("vertices", [3000, 30_000])
-def test_finer_noisy_caps(vertices: int) -> None:
-    check(noisy_cap(vertices, 0.2, [0.465, -0.15, -0.04]), most=150)
-    check(noisy_cap(vertices, 0.105, [0.403, 0.183, 0.326]), most=150)

@@ -76,21 +76,6 @@ def fewest_by_trial(angles: Array, lower: float, upper: float) -> int:
     return parts
 
 
-def test_a_row_beyond_the_limits() -> None:
-    # From 60 to 300 degrees with limits of 185 each way: no full circles fit both ends.
-    degrees = np.arange(60.0, 301.0, 10.0)
-    found = divided(np.radians(degrees), row(len(degrees)), -np.radians(185), np.radians(185))
-    assert len(found.names) == 2 and not found.winding
-    # One color up to 183.85 degrees (1.15 are kept), the other one from 176.15 on.
-    assert [degrees[mask].tolist()[:: len(degrees[mask]) - 1] for mask in found.members] == [
-        [60.0, 180.0],
-        [180.0, 300.0],
-    ] or [degrees[mask].tolist()[:: len(degrees[mask]) - 1] for mask in found.members] == [
-        [180.0, 300.0],
-        [60.0, 180.0],
-    ]
-
-
 def test_a_ring_that_winds_is_cut_at_the_limits() -> None:
     # Once around with limits of 185 degrees each way: one segment is enough, with a wall in it.
     angles = np.radians(np.arange(0.0, 360.0, 10.0))
@@ -146,9 +131,3 @@ def test_every_walk_of_a_color_stays_in_the_limits(data: st.DataObject) -> None:
             if own[i] and own[j]:
                 goes_on = abs(positions[i, 0] - positions[j, 0]) <= pi
                 assert goes_on == ((i, j, color) not in torn)
-
-
-def test_two_full_circles_are_enough_for_a_ring() -> None:
-    angles = np.radians(np.arange(0.0, 360.0, 10.0))
-    found = divided(angles, ring(36), -CIRCLE, CIRCLE)
-    assert (found.names, found.winding, found.cracks) == (("branch",), (), ())

@@ -26,11 +26,9 @@ from cellcolor.frontend import BuildResult, Scene, build_surface
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, signed_task_determinant, tip_jacobian
 from cellcolor.frontend.build import StageClock, build_prepared
-from cellcolor.frontend.parts.shapes import disc_mesh
-from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, named, prepare
-from cellcolor.frontend.reach.sheets import Followed, sheets_of
-from cellcolor.frontend.reach.smooth import Solutions, Tracker
+from cellcolor.frontend.reach.sheets import Followed
+from cellcolor.frontend.reach.smooth import Tracker
 
 pytestmark = pytest.mark.second
 
@@ -126,7 +124,7 @@ def test_without_names_an_arm_with_passing_wrist_axes_has_colors() -> None:
     surface = result.prepared.surface
     # By Newton's method on Pinocchio's Jacobian the links lead to where the sheets say.
     for k in np.random.default_rng(1).choice(len(row), 8, replace=False):
-        ends = surface.edges()[row[k]]
+        ends = surface.mesh.edges[row[k]]
         start, goal = result.configurations[ends, sheet[k]]
         path = follower.along(start, surface.vertices[ends], surface.normals[ends])
         assert path is not None and wrapped(path[-1] - goal).max() < 1e-6
@@ -143,7 +141,7 @@ def linked_nodes(prepared: PreparedScene) -> tuple[Array, Array, Array]:
     solutions = tracker.described(verdicts.configurations)
     limits = prepared.robot.lower, prepared.robot.upper
     matching = Followed.of(surface, nodes, solutions, tracker, limits)
-    return solutions.joints, nodes, matching.along(surface.edges(), NEVER)[0]
+    return solutions.joints, nodes, matching.along(surface.mesh.edges, NEVER)[0]
 
 
 @pytest.mark.second
@@ -161,7 +159,7 @@ def test_a_cuspidal_arm_is_refused_with_both_configurations(
     monkeypatch.setattr("cellcolor.frontend.prepared.named", lambda prepared, _: prepared)
     prepared = prepare(scene)
     surface, robot = prepared.surface, prepared.robot
-    edges = surface.edges()
+    edges = surface.mesh.edges
     joints, nodes, pairs = linked_nodes(prepared)
     slots = nodes.shape[1]
     here, there = (edges[pairs[:, 0], end] * slots + pairs[:, 1 + end] for end in (0, 1))
@@ -188,64 +186,6 @@ def test_a_cuspidal_arm_is_refused_with_both_configurations(
     assert (values > 0).all() or (values < 0).all()
 
 
-class Disc:
-    """A flat disc of seven vertices with two solutions each, linked as a test says."""
-
-    def __init__(self) -> None:
-        flat, faces = disc_mesh(7, 0.0, 0)
-        vertices = np.column_stack([flat, np.zeros(7)])
-        self.surface = Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (7, 1)))
-        self.edges = self.surface.edges()
-        joints = np.zeros((7, 2, 6))
-        joints[:, 1, 0] = 2.0
-        ones = np.ones((7, 2))
-        self.solutions = Solutions(joints, ones, ones.astype(bool))
-
-    def along(self, first: int, second: int, wanted: set[frozenset[int]]) -> Array:
-        rows = [k for k, edge in enumerate(self.edges.tolist()) if frozenset(edge) in wanted]
-        return np.array([[row, first, second] for row in rows]).reshape(-1, 3)
-
-
-def test_components_next_to_each_other_are_in_different_sheets() -> None:
-    disc, nodes = Disc(), np.ones((7, 2), dtype=bool)
-    nodes[:, 1] = False
-    # The center is linked to nothing, the ring all around it to itself.
-    ring = {frozenset(e) for e in disc.edges.tolist() if 0 not in e}
-    sheets = sheets_of(disc.surface, disc.along(0, 0, ring), nodes, disc.solutions)
-    # The ring in the first, the center in the second; what is not valid fills what is free.
-    assert sheets[1:, 0].tolist() == [0] * 6 and sheets[0].tolist() == [1, 0]
-    assert (np.sort(sheets, axis=1) == [0, 1]).all()
-
-
-def test_a_component_and_what_is_linked_to_nothing() -> None:
-    """The example of the module: a triangle with two solutions a and b of each vertex."""
-    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-    surface = Surface(corners, np.array([[0, 1, 2]]), np.tile([0.0, 0.0, 1.0], (3, 1)))
-    ones, (a, b) = np.ones((3, 2)), (0, 1)
-    rows = {tuple(edge): row for row, edge in enumerate(surface.edges().tolist())}
-    links = np.array([[rows[0, 1], a, b], [rows[1, 2], b, a]])
-    solutions = Solutions(np.zeros((3, 2, 6)), ones, ones > 0)
-    sheets = sheets_of(surface, links, ones > 0, solutions)
-    none = -1
-    assert sheets.T.tolist() == [[a, b, a], [b, none, none], [none, a, none], [none, none, b]]
-
-
-def test_a_solution_linked_to_another_one_of_its_vertex_is_refused() -> None:
-    disc, nodes = Disc(), np.ones((7, 2), dtype=bool)
-    ring = {frozenset(e) for e in disc.edges.tolist() if 0 not in e}
-    once = frozenset((1, 2))
-    pairs = np.concatenate(
-        [
-            disc.along(0, 0, ring - {once}),
-            disc.along(1, 1, ring - {once}),
-            disc.along(0, 1, {once}),
-        ]
-    )
-    with pytest.raises(InputError, match=r"2 configurations, \[0.0, .*\] and \[2.0, ") as caught:
-        sheets_of(disc.surface, pairs, nodes, disc.solutions)
-    assert caught.value.field == "vertices[1]"
-
-
 @pytest.mark.slow
 def test_an_arm_without_names_is_driven_and_judged_like_the_others() -> None:
     """Painting, motion and judge follow sheets where they follow branches of other arms."""
@@ -254,15 +194,3 @@ def test_an_arm_without_names_is_driven_and_judged_like_the_others() -> None:
     planned = cellcolor.plan(bare.with_setup(bare.setup.varied(robot=tool)))
     assert planned.verdict.valid and planned.verdict.lift_offs == 0
     assert planned.solution.lower_bound == 1 and "sheet" in planned.built.branches[0]
-
-
-def test_sheets_of_whole_poses_have_the_turn_that_the_setup_gives() -> None:
-    bare = plate(dh_arms.urdf("passing"), "eaik", vertices=60)
-    turn = {"robot": {"locked_joint_6_rad": None}, "task": {"turn": {"along": (1.0, 0.0, 0.0)}}}
-    built = build_surface(bare.with_setup(bare.setup.varied(**turn)))
-    vertex, sheet = np.nonzero(built.reasons == 0)
-    assert len(vertex) > 400
-    poses = forward(built.robot, built.configurations[vertex, sheet])
-    assert np.abs(poses.tip - built.prepared.surface.vertices[vertex]).max() < 1e-9
-    across = poses.rotation[:, -1] @ built.robot.tip[:3, 0]
-    assert np.abs(across - [1, 0, 0]).max() < 1e-9

@@ -110,14 +110,6 @@ def along(at: Array, length: float, turn: float) -> Array:
     return np.asarray((length * at + LEVER * angle) / (length + LEVER * turn))
 
 
-def test_opposite_normals_have_no_motion_between_them() -> None:
-    assert not followed(edge(0.001, np.pi), lambda at: np.pi * at, no_direction).smooth.any()
-
-
-def no_direction(at: Array) -> Array:
-    return np.where(np.abs(at - 0.5) < 1e-9, np.nan, 0.02)
-
-
 @pytest.mark.parametrize(("upper", "fits"), [(4.2, True), (3.8, False)])
 def test_limits_are_asked_of_the_motion_and_not_of_the_shorter_way(
     upper: float, fits: bool

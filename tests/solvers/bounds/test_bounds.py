@@ -9,7 +9,6 @@ from exhaustive_minima import minimum
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import PAPER
-from rooms import graph
 from vertex_minima import vertex_minimum
 
 from cellcolor.data.cells_and_edges import Cell, Edge
@@ -17,7 +16,6 @@ from cellcolor.data.instance import Instance
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.solvers.bounds.cover import color_regions, hard_cells, set_cover
-from cellcolor.solvers.bounds.merged_surface import merge_cells
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat.dart_graph import enough_crossings
 from cellcolor.solvers.interface import Options
@@ -61,35 +59,6 @@ def test_hard_cells_need_as_many_regions_as_all(seed: int, cells: int, colors: i
     assert (len(found) == value) == any(True for _ in sets_of_strangers)
 
 
-def test_more_than_a_cover_needs_has_no_hard_cells() -> None:
-    apart = Instance("apart", ("red",), (Cell(0, (RED,), ()), Cell(1, (RED,), ())), ())
-    assert hard_cells(apart, 2) == [0, 1]
-    assert hard_cells(apart, 3) is None
-
-
-def test_a_color_is_not_dominated_by_one_that_an_edge_keeps_out() -> None:
-    """Cells 0 and 1 have red and blue, but blue goes from one to the other through cell 2 only.
-
-    There a green corridor from 3 to 4 would be in its way: red is needed for 2 segments.
-    """
-    green = 2
-    instance = graph(
-        ((RED, BLUE), (1, 2)),
-        ((RED, BLUE), (-1, 3)),
-        ((BLUE, green), (-2, 4, -3, 5)),
-        ((green,), (-4,)),
-        ((green,), (-5,)),
-        cracks={1: (RED,)},
-    )
-    assert minimum(instance) == 2
-    assert solve(instance, Options()).segments == 2
-
-
-def test_a_color_that_a_crack_stops_is_needed() -> None:
-    # Blue is everywhere where red is, but only red passes the one edge.
-    assert solve(Instance.read(PAPER / "dominated-by-crack.json"), Options()).segments == 1
-
-
 def test_crossings_that_are_enough() -> None:
     """X and Y of the corridors share red and blue, and each touches two cells of one color more."""
     instance = Instance.read(PAPER / "parallel-corridors.json")
@@ -127,31 +96,3 @@ def test_the_surface_bound_holds_for_vertex_colorings(seed: int, colors: int, cr
     assume(1 < len(instance.cells) < 9)
     found = solve(instance, Options())
     assert found.surface_lower_bound <= vertex_minimum(surface)
-
-
-def test_two_cells_that_nothing_separates_become_one() -> None:
-    """A row of three cells of red and blue; the crack on the last edge lets only red through."""
-    cells = tuple(
-        Cell(i, (RED, BLUE), loops) for i, loops in enumerate((((1,),), ((-1, 2),), ((-2,),)))
-    )
-    instance = Instance("row", ("red", "blue"), cells, (Edge(1, 0, 1), Edge(2, 1, 2, (RED,))))
-    found = merge_cells(instance, dict.fromkeys(range(3), frozenset({RED, BLUE})))
-    both = found.merged_cell_of[0]
-    assert found.merged_cell_of == {0: both, 1: both, 2: 2}
-    assert found.loops == {both: [[2]], 2: [[-2]]}
-    assert found.sides == {2: (both, 2)}
-    assert found.joinable == {2: frozenset({RED})}
-
-
-def test_merging_around_a_cell_leaves_a_hole() -> None:
-    """Two half rings of red and blue between a cell inside and one outside."""
-    instance = graph(
-        ((RED, BLUE), (1, 2, 3, 5)),
-        ((RED, BLUE), (-1, 6, -3, 4)),
-        ((2, RED), (-2, -4)),
-        ((RED,), (-5, -6)),
-    )
-    found = merge_cells(instance, {cell.id: frozenset(cell.colors) for cell in instance.cells})
-    ring = found.merged_cell_of[0]
-    assert found.merged_cell_of == {0: ring, 1: ring, 2: 2, 3: 3}
-    assert {frozenset(loop) for loop in found.loops[ring]} == {frozenset({2, 4}), frozenset({5, 6})}

@@ -23,10 +23,10 @@ from cellcolor.cli import main
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.decomposition import decompose
-from cellcolor.errors import InputError, RefusedResult, TooLarge
+from cellcolor.errors import InputError
 from cellcolor.lab.families import SMALL, planar_graph
 from cellcolor.solvers.checked import solve
-from cellcolor.solvers.cpsat import CompleteModel, complete_model
+from cellcolor.solvers.cpsat import CompleteModel
 from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT
 from cellcolor.solvers.cpsat.dart_graph import complete_graph
 from cellcolor.solvers.cpsat.painting import Block, Painting
@@ -263,21 +263,6 @@ def test_own_constraints_are_kept_and_the_result_is_checked() -> None:
 def test_a_wrong_group_is_named() -> None:
     with pytest.raises(InputError, match=r"groups.*'eulers'"):
         cellcolor.formulation("wok", groups=["eulers"])
-
-
-def test_a_model_that_would_be_too_large_is_not_built(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(complete_model, "MOST_LITERALS", 10)
-    with pytest.raises(TooLarge, match="was not built: it would need"):
-        cellcolor.formulation("wok")
-
-
-def test_what_the_checker_refuses_does_not_leave(monkeypatch: pytest.MonkeyPatch) -> None:
-    model = cellcolor.formulation(hub(RED, BLUE))
-    solver = cp_model.CpSolver()
-    solver.solve(model.model)
-    monkeypatch.setattr(type(model), "read", lambda *_: ((), ()))
-    with pytest.raises(RefusedResult):
-        model.division(solver)
 
 
 BARE = """

@@ -24,7 +24,6 @@ from cellcolor.solvers.cpsat.painting import (
     Painting,
     canonical,
     division_of,
-    segments_of,
 )
 from cellcolor.solvers.cpsat.sectors import SectorGraph, sector_colors, sector_graph
 from examples import examples
@@ -88,41 +87,6 @@ def test_segments_are_counted_right(seed: int, cells: int, colors: int, rings: i
         assert search.segments == components(sectors, search.current)
         assert search.fewest <= search.segments
     assert search.fewest == components(sectors, search.best)
-
-
-@examples(20)
-@given(seed=SEEDS)
-def test_without_rings_cells_stay_whole(seed: int) -> None:
-    """Each division is legal and better all the same, and may be where the next search begins."""
-    instance = planar_graph(seed, 12, 24, 4)
-    graph, painting, regions = graph_of(instance), whole(instance), color_regions(instance)
-    known = len(segments_of(graph, painting))
-    for rings in (0, 1, 2):
-        for better in recolor(graph, regions, painting, Random(seed), 0, NEVER, 10, rings):
-            painting = better
-            report = check_division(instance, division_of(graph, painting), seams=graph.seams)
-            assert report.valid and report.segments < known
-            known = report.segments
-            assert rings or all(len(blocks) == 1 for blocks in painting)
-
-
-@pytest.mark.parametrize("petals", [(0, 1, 0, 1), (0, 1, 0, 1, 0, 1), (0, 1, 2, 0, 1, 2)])
-def test_a_hub_is_cut_between_its_petals(petals: tuple[int, ...]) -> None:
-    """Each petal alone to begin with, save those of the hub's color."""
-    assert numbers(hub(*petals), 0)[-1] == minimum(hub(*petals))
-
-
-def test_a_seed_says_what_is_found() -> None:
-    instance = planar_graph(3, 25, 50, 5)
-    sectors = sector_graph(graph_of(instance), 1)
-    start = sector_colors(sectors, whole(instance))
-    regions = color_regions(instance)
-    one, other, third = (Recoloring(sectors, regions, start, Random(seed)) for seed in (1, 1, 2))
-    for _ in range(200):
-        one.move()
-        other.move()
-        third.move()
-    assert one.current == other.current != third.current
 
 
 def test_few_enough_segments_end_it() -> None:

@@ -7,12 +7,10 @@ from functools import partial
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from library import INSTANCES, PAPER
+from library import INSTANCES
 
 from cellcolor.checker.division import check_division
-from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import scheme_key
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, hub, hub_minimum
@@ -42,27 +40,6 @@ def test_hubs_have_their_known_minimum(seed: int, petal_count: int, colors: int)
     assert solve(instance, Options()).segments == hub_minimum(ring)
 
 
-@pytest.mark.parametrize(
-    ("name", "paper", "surface"),
-    [("parallel-corridors", 3, 2), ("parallel-corridors-private", 4, 3)],
-)
-def test_surface_may_beat_paper(name: str, paper: int, surface: int) -> None:
-    instance = Instance.read(PAPER / f"{name}.json")
-    found = solve(instance, Options())
-    assert (found.status, found.segments) == ("optimal", paper)
-    assert not found.proved_for_surface
-    found = solve(instance, Options(search_space="surface", strands=2))
-    assert (found.status, found.segments, found.proved_for_surface) == ("optimal", surface, True)
-
-
-def test_without_a_proof_for_the_surface_nothing_is_called_optimal() -> None:
-    # With one strand the corridors' two segments are not found, and two could cross edge 2.
-    instance = Instance.read(PAPER / "parallel-corridors.json")
-    found = solve(instance, Options(search_space="surface", strands=1))
-    assert (found.segments, found.surface_lower_bound, found.status) == (3, 2, "feasible")
-    assert not found.proved_for_surface
-
-
 def test_a_start_is_kept_when_there_is_no_time() -> None:
     instance = decompose(blobs(3))
     good = solve(instance, Options())
@@ -88,16 +65,6 @@ def test_empty_instance(instance: Instance) -> None:
     found = solve(instance, Options())
     assert (found.status, found.segments, found.lift_offs, found.cells) == ("optimal", 0, 0, ())
     assert list(CpSatSolver().optimal_schemes(instance, Options(), 0)) == [()]
-
-
-def test_a_closed_surface_of_one_cell() -> None:
-    instance = Instance("sphere", ("red", "blue"), (Cell(0, (RED, BLUE), ()),), ())
-    assert solve(instance, Options()).segments == 1
-    # It may be painted in either color.
-    schemes = list(CpSatSolver().optimal_schemes(instance, Options(), 1))
-    assert {scheme_key(s) for s in schemes} == {
-        (frozenset({(color, frozenset())}),) for color in (RED, BLUE)
-    }
 
 
 def test_progress_comes_closer_and_never_passes_the_minimum() -> None:

@@ -7,9 +7,8 @@ from math import comb
 
 import pytest
 
-from cellcolor.solvers.dfs.cell_schemes import CellScheme, cell_schemes
+from cellcolor.solvers.dfs.cell_schemes import cell_schemes
 from cellcolor.solvers.dfs.graph import GraphCell
-from cellcolor.solvers.dfs.search import zeros_fit
 
 
 def divisions(size: int) -> set[frozenset[frozenset[int]]]:
@@ -80,17 +79,3 @@ def test_a_cell_has_more_divisions_than_the_paper_says(
     assert schemes_of_a_lone_cell(edges, colors) == schemes
     assert len(list(cell_schemes(lone, (None,) * edges))) == schemes
     assert (schemes > 2**edges * colors) == (edges >= 4)
-
-
-def test_zeros_that_show_one_color_on_both_sides_do_not_fit() -> None:
-    """Two cells painted alike, or not, and an edge in state 0 that is joinable in red, or not."""
-    red, blue = (CellScheme(((color, ()),), ((0, color),)) for color in (0, 1))
-    for joinable, painted, fits in (
-        ({0, 1}, (red, red), False),
-        ({0, 1}, (red, blue), True),
-        ({1}, (red, red), True),
-    ):
-        cells = [
-            GraphCell(i, (0, 1), (dart,), (frozenset(joinable),)) for i, dart in enumerate((1, -1))
-        ]
-        assert zeros_fit(cells, painted) == fits

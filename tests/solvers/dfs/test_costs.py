@@ -2,14 +2,8 @@
 
 from __future__ import annotations
 
-import random
-from itertools import islice
-
-import networkx
 import pytest
 from exhaustive_minima import minimum
-from hypothesis import given
-from hypothesis import strategies as st
 from library import PAPER
 from meshes import drawn
 from reference import SOLVER, segments
@@ -21,7 +15,7 @@ from cellcolor.deadline import NEVER
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import planar_graph
 from cellcolor.solvers.dfs.graph import Graph
-from cellcolor.solvers.dfs.search import DepthFirstSearch, Painting
+from cellcolor.solvers.dfs.search import DepthFirstSearch
 from cellcolor.solvers.interface import Options
 
 
@@ -89,33 +83,3 @@ def test_the_cost_so_far_may_fall(seed: int) -> None:
     """A branch that costs as much as the best one so far may still come to the minimum."""
     instance = planar_graph(seed, 5, 8, 3)
     assert segments(instance, SOLVER.minimize(instance, Options())) == minimum(instance) == 1
-
-
-@given(st.integers(0, 10**4), st.booleans(), st.randoms(use_true_random=False))
-def test_the_cost_carried_along_is_the_number_of_segments(
-    seed: int, self_edges: bool, chance: random.Random
-) -> None:
-    """Of each part of the graph that is solved so far, counted again by a search for components."""
-    graph = Graph(planar_graph(seed, 6, 10, 2, self_edges=self_edges), 1)
-    search = DepthFirstSearch(graph, [graph.cell(c, 0)[0] for c in graph.parts()[0]], NEVER)
-    painting = Painting()
-    while len(painting.schemes) < len(search.cells):
-        branches = list(islice(search.branches(painting), 50))
-        if not branches:
-            return
-        painting = chance.choice(branches)
-        pieces = [
-            (color, {cell.darts[i] for i in darts})
-            for cell, scheme in zip(search.cells, painting.schemes, strict=False)
-            for color, darts in scheme.subcells
-        ]
-        joined = networkx.Graph()
-        joined.add_nodes_from(range(len(pieces)))
-        joined.add_edges_from(
-            (one, other)
-            for one, (_, darts) in enumerate(pieces)
-            for other, (_, others) in enumerate(pieces)
-            if darts & {twin(dart) for dart in others}
-        )
-        assert painting.cost == networkx.number_connected_components(joined)
-        assert search.least(painting) <= painting.cost + (len(painting.schemes) < len(search.cells))

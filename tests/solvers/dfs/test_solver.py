@@ -166,26 +166,6 @@ def test_progress_closes_the_gap(solver: ReferenceSolver, bound: int) -> None:
     assert found == sorted(found, reverse=True) and len(found) > 2
 
 
-@BOTH
-@pytest.mark.parametrize("petals", range(4, 13))
-def test_hubs(solver: ReferenceSolver, petals: int) -> None:
-    """Known by a recursion that has nothing to do with the search."""
-    instance = hub(petals, petals, 4)
-    assert instance.known is not None and instance.known.paper is not None
-    answer = solver.minimize(instance, Options())
-    assert segments(instance, answer) == answer.lower_bound == instance.known.paper.segments
-
-
-def test_strands_reach_divisions_of_the_surface() -> None:
-    """Red and blue pass side by side through one edge: below the paper's minimum."""
-    instance = Instance.read(PAPER / "parallel-corridors.json")
-    assert segments(instance, COVERED.minimize(instance, Options())) == 3
-    answer = COVERED.minimize(instance, SURFACE)
-    assert segments(instance, answer, strands=2) == answer.lower_bound == 2
-    answer = SOLVER.minimize(instance, SURFACE)
-    assert (segments(instance, answer, strands=2), answer.lower_bound) == (2, 1)
-
-
 def test_bound_in_surface_is_not_the_minimum_of_two_strands() -> None:
     """The minimum with k strands is proved for k strands only: the bound stays what covers say."""
     instance = Instance.read(PAPER / "figeasycell4.json")
