@@ -169,9 +169,10 @@ def check_files(request: Request) -> Exit:
 
 def _check_solution(request: Request, claim: Path) -> Exit:
     """Say what is known of a solution, and of the schemes that follow it in its file."""
-    from cellcolor.door.judging import check
-
     subject = request.opened(NEVER)
+
+    from cellcolor.door.judging import check  # imports a solver
+
     instance, solution = subject.graph(), Solution.read(claim)
     on_trust = subject.check_graph()
     report = check(subject, solution)

@@ -211,16 +211,14 @@ def rest_of(
     choice = front_of(subject.graph(options.deadline), options).fewest_for(cover)
     why = f"{100 * cover:.1f} % of what can be covered is asked for"
     notes += (f"{why}; covered with {choice}. The rest is left out on purpose.",)
-    return _without_cells(subject, choice.point.left_out), notes, choice.point.covered_share
-
-
-def _without_cells(subject: Subject, cells: tuple[int, ...]) -> Subject:
-    """The subject without some cells: on its surface, or in the graph where there is none."""
-    if not cells:
-        return subject
-    if subject.given_instance is not None:
-        return Subject(None, given_instance=subject.given_instance.without_cells(cells)[0])
-    return subject.without_vertices(np.isin(subject.decomposition.vertex_cell, cells))
+    left_out = choice.point.left_out
+    if left_out and subject.given_instance is not None:
+        graph, _ = subject.given_instance.without_cells(left_out)
+        subject = Subject(None, given_instance=graph)
+    elif left_out:
+        cells = subject.decomposition.vertex_cell
+        subject = subject.without_vertices(np.isin(cells, left_out))
+    return subject, notes, choice.point.covered_share
 
 
 def with_schemes(

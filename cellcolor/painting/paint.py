@@ -15,7 +15,7 @@ from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.data.value import same_members
+from cellcolor.data.value import WithArrays
 from cellcolor.data.wording import count, segments_and_lift_offs
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition
@@ -62,7 +62,7 @@ class BorderReport:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Painted:
+class Painted(WithArrays):
     """A painted solution.
 
     Attributes:
@@ -118,10 +118,7 @@ class Painted:
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self}>"
 
-    def __eq__(self, other: object) -> bool:
-        return same_members(self, other) if isinstance(other, Painted) else NotImplemented
-
-    def __hash__(self) -> int:
+    def __hash__(self) -> int:  # type: ignore[override]
         return hash((self.surface, self.plan))
 
 

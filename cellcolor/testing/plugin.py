@@ -7,6 +7,7 @@ rest is imported when a test asks for the fixture.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -68,7 +69,7 @@ def cellcolor_oracle(request: pytest.FixtureRequest) -> Callable[[Solvable], Sur
     nothing again; ``--cache-clear`` forgets it. Fixtures of any scope can use it. The verdict is a
     property of the test, which ``--junit-xml`` writes.
     """
-    from cellcolor.testing.surface_under_test import surfaces_under_test
+    from cellcolor.testing.surface_under_test import open_surface
 
     config, session = request.config, request.session
     cache, folder = getattr(config, "cache", None), config.getoption(_CACHE)
@@ -82,7 +83,7 @@ def cellcolor_oracle(request: pytest.FixtureRequest) -> Callable[[Solvable], Sur
         name = f"cellcolor: {surface}"  # the last verdict, of a property test's many
         properties[:] = [own for own in properties if own[0] != name] + [(name, verdict)]
 
-    return surfaces_under_test(config.getoption(_TIME_LIMIT), folder, record)
+    return partial(open_surface, config.getoption(_TIME_LIMIT), folder, record)
 
 
 @pytest.hookimpl(tryfirst=True)

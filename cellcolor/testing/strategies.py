@@ -152,7 +152,8 @@ def broken_plans(surface: LabelledSurface) -> st.SearchStrategy[Plan]:
     return valid_plans(surface).flatmap(
         lambda plan: st.one_of(
             *(_wrong_at(plan, faults) for faults in wrong if faults),
-            *(st.just(Plan(colors)) for colors in _of_wrong_length(plan)),
+            st.just(Plan((*plan.vertex_colors, None))),
+            *([st.just(Plan(plan.vertex_colors[:-1]))] if plan.vertex_colors else []),
         )
     )
 
@@ -165,8 +166,3 @@ def _wrong_at(plan: Plan, faults: dict[int, list[int | None]]) -> st.SearchStrat
             lambda color: Plan((*colors[:vertex], color, *colors[vertex + 1 :]))
         )
     )
-
-
-def _of_wrong_length(plan: Plan) -> list[tuple[int | None, ...]]:
-    colors = plan.vertex_colors
-    return [(*colors, None)] + ([colors[:-1]] if colors else [])

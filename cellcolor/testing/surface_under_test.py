@@ -19,28 +19,21 @@ from cellcolor.testing import PICTURES
 _SHOWN = 3  # problems of a plan that is not valid
 
 
-def surfaces_under_test(
-    time_limit: float, folder: Path | None, record: Callable[[str, str], None]
-) -> Callable[[Solvable], SurfaceUnderTest]:
-    """What opens surfaces for tests.
-
-    Args:
-        time_limit: seconds for each proof.
-        folder: where proofs and pictures are kept; None keeps neither.
-        record: takes the name of a surface and a verdict on it, in one line.
-    """
-
-    def open_surface(source: Solvable) -> SurfaceUnderTest:
-        __tracebackhide__ = True
-        try:
-            return SurfaceUnderTest(source, time_limit, folder, record)
-        except InputError as error:
-            raise _shortened(error) from None
-        except OutOfTime:
-            message = f"the scene was not built in {time_limit:g} s (--cellcolor-time-limit)"
-            raise OutOfTime(message) from None
-
-    return open_surface
+def open_surface(
+    time_limit: float,
+    folder: Path | None,
+    record: Callable[[str, str], None],
+    source: Solvable,
+) -> SurfaceUnderTest:
+    """A surface for tests; errors say all in one line, without the way through our own code."""
+    __tracebackhide__ = True
+    try:
+        return SurfaceUnderTest(source, time_limit, folder, record)
+    except InputError as error:
+        raise error.with_traceback(None) from None
+    except OutOfTime:
+        message = f"the scene was not built in {time_limit:g} s (--cellcolor-time-limit)"
+        raise OutOfTime(message) from None
 
 
 class SurfaceUnderTest:
@@ -91,7 +84,7 @@ class SurfaceUnderTest:
         try:
             verdict = self._oracle.judge(plan)
         except InputError as error:
-            raise _shortened(error) from None
+            raise error.with_traceback(None) from None
         self._record(self.surface.name, str(verdict))
         return verdict
 
@@ -163,8 +156,3 @@ class SurfaceUnderTest:
         except CellcolorError as error:
             return [f"no picture: {error}"]
         return [f"picture: {file}", f"better: {better}"]
-
-
-def _shortened(error: InputError) -> InputError:
-    """An error that says all in its one line, without the way through cellcolor's own code."""
-    return error.with_traceback(None)

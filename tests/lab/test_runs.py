@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 
 from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError
-from cellcolor.lab.runs.row import Row, compared, disagreements
 from cellcolor.lab.runs.summary import (
     contestants_of,
     median_seconds,
@@ -26,7 +25,7 @@ from cellcolor.lab.runs.sweep import (
     of_family,
     taking_turns,
 )
-from cellcolor.lab.runs.table import TableFile, read_table
+from cellcolor.lab.runs.table import Row, TableFile, compared, disagreements, read_table
 
 ROW = Row(
     family="f",
