@@ -19,7 +19,13 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import ModelSize
 from cellcolor.deadline import Deadline
 from cellcolor.errors import TooLarge
-from cellcolor.solvers.bounds.cover import Region, color_regions, greedy_independent_set, set_cover
+from cellcolor.solvers.bounds.cover import (
+    Region,
+    color_regions,
+    greedy_independent_set,
+    set_cover,
+    within,
+)
 from cellcolor.solvers.cpsat.dart_graph import (
     DartGraph,
     complete_graph,
@@ -31,7 +37,7 @@ from cellcolor.solvers.cpsat.exact_shapes import exact_minimum, painting_of_area
 from cellcolor.solvers.cpsat.formulation import SectorModel
 from cellcolor.solvers.cpsat.local_search import recolor
 from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, moved, segments_of
-from cellcolor.solvers.cpsat.segment_plans import Planner, Undecided
+from cellcolor.solvers.cpsat.segment_plans import Planner, SegmentPlan, Undecided
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.interruptible import Runner
 
@@ -49,6 +55,9 @@ first plan ends the search, so the first turn does not last long."""
 LEVELS = (1, 0.1), (2, 0.2), (0, 0.7)
 """How much of a linear relaxation plans are made with, and the share of the effort. Plans of many
 segments are ruled out by a full relaxation, by a small one or by none, hardly ever by all."""
+
+DECIDING = 4
+"""How much more effort than a plan it may take to decide whether a division follows it."""
 
 MOST_LITERALS = 100_000
 """A larger model takes longer to build than local search takes to find more."""
@@ -178,14 +187,20 @@ class Part:
             except Undecided:
                 return
             if plan is None:
-                self._raise_to(self.bound + 1, "conflicts", for_surface=True)
+                refuted = self.planner.refuted(self.bound)
+                kind = "exact" if refuted else "conflicts"
+                self._raise_to(self.bound + 1, kind, for_surface=not refuted)
                 continue
             self._planned = [region for region, _ in plan]
             start = self._covered([(region[0], cells) for region, cells in plan])
             self._keep(*start)
             if not self.done:
                 self._recolor(*start, Random(self._options.seed), deadline, FEW_MOVES)
-            if self.done or not self.planner.find_separations(plan, deadline):
+            if self.done:
+                return
+            if not self.planner.find_separations(plan, deadline) and not self._decide(
+                plan, DECIDING * effort, deadline
+            ):
                 return
 
     def solve_model(self, deadline: Deadline) -> None:
@@ -242,6 +257,33 @@ class Part:
             cell for (own, at), cell in first.items() if at or not any(o < own for o, _ in first)
         )
         return tuple(sorted(hard))
+
+    def _decide(self, plan: SegmentPlan, effort: float, deadline: Deadline) -> bool:
+        """Whether it is decided if a division in a plan's color regions alone meets the bound.
+
+        It is the complete model of the few colors that the plan leaves, without objective.
+        """
+        few = within(self.instance, [region for region, _ in plan])
+        status = cp_model.UNKNOWN
+        for strands in [self._once] + [self._widest] * (self._once != self._widest):
+            try:
+                graph = complete_graph(few, {edge: strands[edge] for edge in few.live_edges})
+                built = SectorModel(graph, color_regions(few), MOST_LITERALS, deadline=deadline)
+                target = complete_graph(self.instance, strands)
+            except TooLarge:
+                return False
+            built.model.add(built.segments <= self.bound)
+            built.model.clear_objective()
+            solver = self._runner.single(effort, deadline)
+            solver.parameters.linearization_level = 0
+            status = self._runner.solve(solver, built.model)
+            if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+                painting = canonical(graph, built.painting(solver))
+                self._keep(target, canonical(target, moved(graph, painting, target)))
+                return True
+        if status == cp_model.INFEASIBLE and self.planner is not None:
+            self.planner.refute(plan, self.bound)
+        return status == cp_model.INFEASIBLE
 
     def _minimize(self, strands: dict[int, int], deadline: Deadline) -> None:
         try:

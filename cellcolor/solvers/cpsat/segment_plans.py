@@ -19,7 +19,7 @@ model takes seconds. Terms:
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import combinations, product
 
 from ortools.sat.python import cp_model
@@ -90,6 +90,7 @@ class Planner:
                 self._regions_of[merged_cell].append(number)
         self._pairs: dict[tuple[int, int], RegionPair] = {}
         self._separations: dict[tuple[int, int], list[Separation]] = {}
+        self._refuted: dict[int, list[set[int]]] = defaultdict(list)
         # The segments of the last plan, with the kinds that they touch.
         self._last: dict[_Copy, set[int]] = {(self._number[region], 0): set() for region in cover}
 
@@ -123,6 +124,8 @@ class Planner:
             built.add_cover(self._demands(kinds))
             for ends, groups in separated:
                 built.add_separation(ends, groups)
+            for regions in self._refuted[segments]:
+                built.add_another(regions)
             solver, status = solve(built.model)
             if status == cp_model.INFEASIBLE:
                 return None
@@ -140,6 +143,15 @@ class Planner:
             if true(literal)
         }
         return self._read(kinds)
+
+    def refute(self, plan: SegmentPlan, segments: int) -> None:
+        """No division with so many segments has all of them in the color regions of a plan."""
+        regions = {self._number[region] for region, _ in plan}
+        self._refuted[segments].append(regions)
+
+    def refuted(self, segments: int) -> bool:
+        """Whether some plan with so many segments was refuted."""
+        return bool(self._refuted[segments])
 
     @property
     def separations(self) -> Iterator[tuple[Region, Region, Separation]]:
@@ -335,6 +347,12 @@ class _PlanModel:
             both = [self._touches(near, merged_cells) for _, merged_cells in ends]
             touched = [self._touches(far, merged_cells) for _, merged_cells in groups]
             self.model.add(sum(touched) <= 1).only_enforce_if(both + told_apart)
+
+    def add_another(self, regions: Collection[int]) -> None:
+        """Some segment lies in a region that is not among these."""
+        self.model.add_bool_or(
+            own for (region, copy), own in self.in_use.items() if not copy and region not in regions
+        )
 
     def _segments_in(self, region: int) -> list[_Copy]:
         return [(region, copy) for copy in range(self._copies[region])]
