@@ -78,12 +78,7 @@ def _blocks(
     members: list[list[int]] = []
 
     def decide(able: tuple[int, ...], last: int) -> Iterator[Blocks]:
-        """Decide the next dart.
-
-        Args:
-            able: the blocks that can get it.
-            last: the block of the last one in state 1, -1 for none.
-        """
+        """Decide the next dart: ``able`` blocks can get it, ``last`` has the last one in state 1."""
         place = len(states)
         if place == len(darts):
             if len(members) < 2 or (
