@@ -78,7 +78,11 @@ def _blocks(
     members: list[list[int]] = []
 
     def decide(able: tuple[int, ...], last: int) -> Iterator[Blocks]:
-        """Decide the next dart: ``able`` blocks can get it, ``last`` has the last one in state 1."""
+        """Decide the next dart, which ``able`` blocks can get.
+
+        Args:
+            last: the block of the last dart in state 1, -1 for none.
+        """
         place = len(states)
         if place == len(darts):
             if len(members) < 2 or (

@@ -54,7 +54,7 @@ with its color and the darts across which it is joined. Other cells are joined f
 
 
 def exact_minimum(instance: Instance, deadline: Deadline) -> Exact | None:
-    """The minimum of a part that is a forest, a wheel, or hubs with one-colored neighbors; else None.
+    """The minimum of a forest, a wheel, or hubs with one-colored neighbors; None for other parts.
 
     No division that crosses each live edge once at most has fewer segments.
     """
