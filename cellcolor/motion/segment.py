@@ -31,12 +31,8 @@ class Ground:
     """What the strokes of all segments have in common.
 
     Attributes:
-        prepared: the scene.
         segments: of the painted surface.
         states: what the arm does at the corners of its small triangles.
-        pattern: of the tool paths.
-        motion: of the setup.
-        deadline: when to give up.
     """
 
     prepared: PreparedScene
@@ -47,25 +43,14 @@ class Ground:
     deadline: Deadline
 
 
-def strokes_of(
-    ground: Ground, segment: int, branch: int
-) -> tuple[Covered, list[Stroke], Collection[tuple[int, int]]]:
+def strokes_of(ground: Ground, segment: int, branch: int) -> tuple[Covered, list[Stroke]]:
     """Lay out a segment's paths so that the arm can follow them, and follow them.
 
     They go beyond the segment's border if neighbors are to overlap and one stroke is enough then.
     Walls are put up only where a joint would exceed its limits without them.
 
-    Args:
-        ground: what they are made on.
-        segment: its number.
-        branch: of its color.
-
     Returns:
-        Its tool paths, the strokes on them, each within the limits of the joints, and the walls,
-        mesh edges, that were put up for that.
-
-    Raises:
-        OutOfTime: the deadline came first.
+        Its tool paths, and the strokes on them, each within the limits of the joints.
     """
     segments, motion, space = ground.segments, ground.motion, joint_space(ground.prepared)
     own = segments.segment_of == segment
@@ -82,12 +67,12 @@ def strokes_of(
         covered, courses = _courses(ground, segment, branch, refusals, overlap=overlap)
         strokes = _on(ground, courses, branch)
         if len(strokes) == 1 and space.fits(strokes[0].joints):
-            return covered, strokes, ()
+            return covered, strokes
     refusals = refused_near(own)
     covered, courses = _courses(ground, segment, branch, refusals)
     strokes = _on(ground, courses, branch)
     if all(space.fits(stroke.joints) for stroke in strokes):
-        return covered, strokes, ()
+        return covered, strokes
     return _between_walls(ground, segment, branch, refusals, len(strokes))
 
 
@@ -119,7 +104,7 @@ def _courses(
 
 def _between_walls(
     ground: Ground, segment: int, branch: int, refusals: ArmRefusals, parted: int
-) -> tuple[Covered, list[Stroke], Collection[tuple[int, int]]]:
+) -> tuple[Covered, list[Stroke]]:
     """As :func:`strokes_of`, with walls between which the joints stay in their limits.
 
     Args:
@@ -137,10 +122,10 @@ def _between_walls(
     if joint is not None:
         text = f"{names[joint]} cannot follow the whole segment"
         for at in range(parted, len(strokes)):
-            parting = Parting.at("winding", text, strokes[at].points[0])
+            parting = Parting("winding", text, strokes[at].points[0])
             strokes[at] = replace(strokes[at], parting=parting)
     cut = [part for stroke in strokes for part in cut_where_full(stroke, space, names)]
-    return covered, _worth_a_lift_off(cut, ground.motion.spacing_m), walls
+    return covered, _worth_a_lift_off(cut, ground.motion.spacing_m)
 
 
 def _on(ground: Ground, courses: list[Course], branch: int) -> list[Stroke]:
@@ -153,7 +138,7 @@ def _on(ground: Ground, courses: list[Course], branch: int) -> list[Stroke]:
         parts = trimmed(segment, branch, course.samples, course.followed, spacing, names, space)
         if parts and found:
             text = "places that no sample may touch divide the segment"
-            parting = Parting.at("trimmed", text, course.path.points[0])
+            parting = Parting("trimmed", text, course.path.points[0])
             parts[0] = replace(parts[0], parting=parting)
         found += parts
     return _worth_a_lift_off(found, spacing)

@@ -21,9 +21,6 @@ class _Sampled(Part):
     jitter: Annotated[FiniteFloat, Field(ge=0, le=0.25)] = 0.0
     seed: Annotated[int, Field(ge=0)] = 0
 
-    def _disc(self) -> tuple[Array, Faces]:
-        return disc_mesh(self.target_vertices, self.jitter, self.seed)
-
     def _grid(self, width: float, height: float) -> tuple[Array, Faces]:
         return grid_mesh(width, height, self.target_vertices, self.jitter, self.seed)
 
@@ -37,7 +34,8 @@ class CapObject(_Sampled):
 
     def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:  # noqa: ARG002
         """The cap as rings of vertices about its pole."""
-        return spherical_cap(self.radius_m, self.half_angle_rad, *self._disc())
+        disc = disc_mesh(self.target_vertices, self.jitter, self.seed)
+        return spherical_cap(self.radius_m, self.half_angle_rad, *disc)
 
 
 class PipeObject(_Sampled):
@@ -73,7 +71,6 @@ def disc_mesh(target: int, jitter: float, seed: int) -> tuple[Array, Faces]:
         target: wanted number of vertices; the nearest possible one is 1 + 3 k (k + 1).
         jitter: vertices are moved by at most this part of a ring's width, along the rim and
             (except on the rim) across it, so that borders do not run along mesh lines.
-        seed: of the jitter.
 
     Returns:
         points (n, 2) and faces (m, 3), counter-clockwise.
@@ -116,7 +113,6 @@ def grid_mesh(
         target: wanted number of vertices; rows and columns are chosen near it.
         jitter: vertices are moved by at most this part of a mesh, on the border along it only,
             at the corners not at all.
-        seed: of the jitter.
 
     Returns:
         points (n, 2) and faces (m, 3), counter-clockwise.

@@ -13,7 +13,7 @@ continuous is tested as of named branches, in much shorter steps.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +46,6 @@ class Measure:
     """How motions are measured.
 
     Attributes:
-        policy: the bounds on steps.
         near_singular: steps with a task determinant below this, m^3, are always looked into.
         lever: the way that counts like a turn of the tool by one rad, m.
         periods: (joints,) after which a joint comes back, infinite for a prismatic one.
@@ -126,16 +125,10 @@ class _Steps:
 
     def halves(self, middle: Array, joints: Array, determinants: Array) -> _Steps:
         """All first halves, then all second ones."""
-        both = np.concatenate
-        return _Steps(
-            row=both([self.row, self.row]),
-            low=both([self.low, middle]),
-            high=both([middle, self.high]),
-            first=both([self.first, joints]),
-            last=both([joints, self.last]),
-            first_determinant=both([self.first_determinant, determinants]),
-            last_determinant=both([determinants, self.last_determinant]),
-        )
+        before = replace(self, high=middle, last=joints, last_determinant=determinants)
+        after = replace(self, low=middle, first=joints, first_determinant=determinants)
+        both = ([getattr(half, field.name) for half in (before, after)] for field in fields(self))
+        return _Steps(*map(np.concatenate, both))
 
 
 def follow_edges(
@@ -154,7 +147,6 @@ def follow_edges(
         branches: (k,) one of each edge.
         configurations: (k, joints) at the first ends and at the second ones, rad.
         determinants: (k,) task determinants at both, m^3.
-        measure: what is a jump.
         probe: see :data:`Probe`; called with points in between.
     """
     lengths, turns = surface.lengths(edges), surface.turns(edges)
@@ -256,7 +248,6 @@ class Tracker:
         """An arm whose tool is on the last axis, and what is asked of its motions.
 
         Args:
-            measure: what is a jump.
             limits: what counts as well conditioned; everything, without.
         """
         self._robot, self.measure, self._limits = robot, measure, limits
