@@ -30,9 +30,8 @@ from cellcolor.errors import CellcolorError, InputError, SolverMissing
 from cellcolor.solvers.registry import DEFAULT, PAPERS, REFERENCE
 
 if TYPE_CHECKING:
-    from cellcolor.lab.runs.row import Row
     from cellcolor.lab.runs.sweep import Contestant, Specimen
-    from cellcolor.lab.runs.table import TableFile
+    from cellcolor.lab.runs.table import Row, TableFile
 
 
 def _numbers(_context: click.Context, _option: click.Parameter, value: str) -> tuple[int, ...]:
@@ -109,8 +108,8 @@ def run(**given: Any) -> Exit:
 @_TABLES
 def summary(tables: tuple[Path, ...]) -> Exit:
     """Sum tables up as Markdown; exit code 1 if two runs contradict each other."""
-    from cellcolor.lab.runs.row import disagreements
     from cellcolor.lab.runs.summary import summary_of_runs
+    from cellcolor.lab.runs.table import disagreements
 
     rows = _read(tables)
     if not rows:
@@ -143,10 +142,9 @@ def _run_solvers(
     Args:
         wanted: what else :class:`~cellcolor.lab.runs.sweep.Sweep` has of the options.
     """
-    from cellcolor.lab.runs.row import disagreements
     from cellcolor.lab.runs.summary import summary_of_runs
     from cellcolor.lab.runs.sweep import Sweep, taking_turns
-    from cellcolor.lab.runs.table import TableFile
+    from cellcolor.lab.runs.table import TableFile, disagreements
     from cellcolor.lab.workers import Workers
 
     specimens = list(taking_turns([list(_subjects(text, seeds)) for text in subjects]))

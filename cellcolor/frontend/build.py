@@ -40,7 +40,6 @@ class StageClock:
     """What one build has spent its time on.
 
     Attributes:
-        deadline: when to give up.
         seconds: wall time of each timed stage, in the order in which they first ended; of a stage
             that came several times, the sum.
     """
@@ -50,11 +49,7 @@ class StageClock:
         self.seconds: dict[str, float] = {}
 
     def begin(self, stage: str) -> None:
-        """A stage begins.
-
-        Raises:
-            OutOfTime: the deadline has come.
-        """
+        """A stage begins."""
         self.deadline.check()
         if self._progress is not None:
             self._progress(stage)
@@ -239,9 +234,6 @@ def build_surface(
 ) -> BuildResult:
     """Compute which colors reach each point of a scene's object.
 
-    Args:
-        scene: the scene, or the name of its file.
-
     Raises:
         InputError: the scene, its setup, a URDF or a mesh cannot be used; names file and field.
     """
@@ -263,7 +255,6 @@ def build_prepared(prepared: PreparedScene, clock: StageClock) -> BuildResult:
     Raises:
         InputError: there are too many vertices for the turns of the tool; a displaced part stands
             in a link that cannot move; a tolerance asks for an arm whose solutions have names.
-        OutOfTime: the clock's deadline came first.
     """
     with naming(prepared.scene.file):
         verdicts, continuous, linked = _judged(prepared, clock)
@@ -331,10 +322,8 @@ def colored(
     """A labelled surface, from what the tests have found.
 
     Args:
-        verdicts: on all candidates.
         continuous: (edges, branches) along which mesh edges a branch moves without a jump.
         linked: those that are valid between the vertices as well.
-        clock: the time they have taken.
     """
     surface, branches = prepared.surface, prepared.arm.kinematics.branches
     with clock.timed("colors and cracks"):

@@ -58,7 +58,6 @@ class PreparedScene(Workplace):
         part: in its own frame.
         surface: the surface to be covered, in the world.
         notes: likely mistakes in robot and mesh, one sentence each.
-        left_out: names of tests that are not made.
     """
 
     scene: Scene
@@ -119,9 +118,6 @@ class PreparedScene(Workplace):
 
 def prepare(scene: Scene | str | PathLike[str], deadline: Deadline = NEVER) -> PreparedScene:
     """Read what a scene and its setup name, and put it in place.
-
-    Args:
-        scene: a scene, or the name of its file.
 
     Raises:
         InputError: a file cannot be used, the object stands in a link that cannot move, or the

@@ -184,10 +184,10 @@ def _threshold(threshold: str, given: str) -> Relaxation:
 
 def _lowered(prepared: PreparedScene, amount: float) -> PreparedScene:
     ground = prepared.ground
-    if ground is not None:
-        lower = replace(ground, offset_m=ground.offset_m - amount)
-        ground = lower if np.isfinite(amount) else None
-    return _with_room(prepared, ground=ground)
+    if ground is None or not np.isfinite(amount):
+        return _with_room(prepared, ground=None)
+    lower = ground.moved(np.eye(3), -amount * ground.rotation[:, 2])
+    return _with_room(prepared, ground=lower)
 
 
 _GROUND = Relaxation(

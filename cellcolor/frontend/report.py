@@ -56,15 +56,12 @@ class BuildReport:
     """What a build found.
 
     Attributes:
-        survey: where the object is.
-        vertices: of the surface.
         reachable: vertices with at least one valid configuration.
         area_m2: of the whole surface.
         reachable_area_m2: of the reachable vertices.
         candidates: how many of the vertex-branch candidates ended with each reason.
         unreachable: how many unreachable vertices have each reason; counted for the branch that
             passed the most tests.
-        colors: see :class:`ColorReport`.
         cracks: number of mesh edges with a crack.
         notes: likely mistakes in robot and mesh, one sentence each.
         stand_ins: what collides in the place of the meshes of links, and how far off it is.

@@ -19,11 +19,13 @@ from pydantic import (
     model_validator,
 )
 
+from cellcolor.arrays import unit
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
+from cellcolor.frontend.arm.body import Shape
+from cellcolor.frontend.arm.kinematics import frames_along
 from cellcolor.frontend.contact.obstacle import OBSTACLES, Obstacle
-from cellcolor.frontend.contact.tip import HalfSpace
 from cellcolor.frontend.parts.cover import Cover
 from cellcolor.frontend.parts.mesh import ArraysObject
 from cellcolor.frontend.parts.placement import Placement, Tolerance, rotation_from_rpy
@@ -60,16 +62,17 @@ class Ground(Table):
         return normal
 
     @property
-    def half_space(self) -> HalfSpace:
+    def half_space(self) -> Shape:
         """The ground, in the world."""
-        return HalfSpace.through(np.array([0.0, 0.0, self.height_m]), np.array(self.normal))
+        normal = unit(np.array(self.normal))
+        foot = normal[2] * self.height_m * normal  # of the perpendicular from the origin
+        return Shape("half-space", rotation=frames_along(normal[None])[0], origin=foot)
 
     def seen_from(self, frame: Placement) -> Ground:
         """The same ground in an upright frame that stands in the world itself."""
-        plane, normal = self.half_space, np.array(self.normal)
-        off_m = plane.offset_m - float(plane.along(np.array(frame.position_m)))
-        turned = tuple((normal @ rotation_from_rpy(*frame.rpy_rad)).tolist())
-        return Ground(height_m=off_m / plane.normal[2], normal=turned)
+        plane, turn = self.half_space, rotation_from_rpy(*frame.rpy_rad)
+        below = float(plane.heights(np.array(frame.position_m)) / plane.rotation[2, 2])
+        return Ground(height_m=-below, normal=tuple((np.array(self.normal) @ turn).tolist()))
 
     @property
     def tilt_rad(self) -> float:

@@ -104,15 +104,8 @@ def assembled(
     """The trajectory: every stroke, and every planned motion in between, from rest to rest.
 
     Args:
-        robot: the arm.
         motion: of the setup; by the distance between passes it decides what is passed twice.
-        speeds: of the joints.
-        strokes: in their order.
         transfers: the way to the first stroke, those between strokes, and that from the last one.
-        deadline: when to give up.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     rows = _Rows()
     unplanned: dict[int, str] = {}
@@ -140,7 +133,8 @@ def assembled(
         if stroke.segment in last_of:
             why = partings[stroke.segment].pop(0)
             last = last_of[stroke.segment]
-            extra.append(ExtraLiftOff(last, stroke.segment, why.reason, why.text, why.place))
+            x, y, z = why.place.tolist()
+            extra.append(ExtraLiftOff(last, stroke.segment, why.reason, why.text, (x, y, z)))
         begun = _add_stroke(rows, robot, stroke, motion, speeds)
         repeated += [
             RepeatedStretch(begun + a, begun + b, "beside another pass")

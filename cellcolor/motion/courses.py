@@ -55,20 +55,12 @@ def laid_out(
     """Lay out the paths of a segment, and again without the places where a sample fails.
 
     Args:
-        prepared: the scene.
-        surface: the painted one.
         normals: (n, 3) outward, at its vertices; of any length, which counts between them.
-        branch: of the segment's color.
-        lay: makes the segment's paths.
         refusals: where these do not go; it is told where samples fail.
-        deadline: when to give up.
 
     Returns:
         What was laid out, and the arm on each path. Hardly any sample fails; the caller cuts out
         those that still do.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     for left in reversed(range(_ROUNDS)):
         covered = lay()

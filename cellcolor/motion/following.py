@@ -58,8 +58,6 @@ def with_normals_of(samples: Samples, mesh: TriangleMesh, normals: Array) -> Sam
     sharp edge, they are a degree or more off those of the triangles.
 
     Args:
-        samples: of a path on the surface.
-        mesh: the surface's.
         normals: (n, 3) outward, at its vertices; of any length, which counts between them.
     """
     shares = mesh.shares(samples.faces, samples.points)
@@ -147,9 +145,6 @@ def follow(
 
     The test for jumps between two samples is that for mesh edges (``docs/frontend.md``,
     "Continuity"), so no jump is ever smoothed over.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     branches = np.full(len(samples), branch, dtype=np.intp)
     found = prepared.arm.follow(samples.points, -samples.normals, branches)

@@ -39,7 +39,6 @@ class FreeSpace:
         """Widen the arm's bodies by what they keep clear.
 
         Args:
-            prepared: the scene.
             clearance: what is kept from everything besides the setup's margins, m.
             share: how much of that is kept after all. What is free for a share is free for a
                 smaller one.
@@ -66,7 +65,7 @@ class FreeSpace:
             pairs.extend((body, thing, room) for body in own_tip)
 
         if place.ground is not None:
-            ground = place.ground.shape
+            ground = place.ground
             self._things[id(ground)] = "the ground"
             keep(ground, free, margins.to_ground_m)
         for number, obstacle in enumerate(place.obstacles):

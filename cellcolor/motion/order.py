@@ -31,13 +31,8 @@ def ordered(
 
     Args:
         strokes: each fits into the limits.
-        space: of the joints.
         velocities: (joints,) the greatest, rad/s or m/s.
         home: (joints,) where the arm begins and ends; None if that does not matter.
-        deadline: when to give up.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     own = [_ways(stroke, space) for stroke in strokes]
     ways = [way for some in own for way in some]
@@ -134,7 +129,6 @@ def chosen_turns(
     Args:
         visits: in their order; each fits into the limits.
         home: (joints,) where the arm begins and ends; None if that does not matter.
-        space: of the joints.
         velocities: (joints,) the greatest, rad/s or m/s.
         detour: how much longer the arm takes from one configuration (joints,) to another than
             a straight move, s; 0 if that is free.

@@ -65,18 +65,12 @@ def plan_motion(
     """Plan a motion that covers a painted surface (docs/motion.md).
 
     Args:
-        built: the scene and its labelled surface.
-        painted: its surface in segments.
-        pattern: of the tool paths.
         seed: of the configurations that moves may lead over; the same seed gives the same motion.
-        deadline: when to give up.
-        progress: told the name of each stage as it begins.
         on_paths: called with the tool paths once they are laid, before the arm moves on them.
 
     Raises:
         InputError: the setup has no motion, or one that does not fit the arm, or the arm can
             follow no path at all.
-        OutOfTime: the deadline came first.
     """
     prepared = built.prepared
     motion = motion_of(prepared)

@@ -33,9 +33,6 @@ def with_best_posture(
     """The solution of a scene with the posture that its setup prefers, and as many segments.
 
     Args:
-        built: the scene and its labelled surface.
-        decomposition: of that surface.
-        solution: of that.
         options: deadline, workers and seed; it takes no more than 10 seconds.
 
     Raises:

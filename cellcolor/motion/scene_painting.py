@@ -36,8 +36,6 @@ class ScenePainting:
         painted: the painting, its borders moved.
         built: the labelled surface that was painted, and what reaches it: what was given, unless it
             had to be solved again.
-        decomposition: of that surface.
-        solution: of that surface.
     """
 
     painted: Painted
@@ -58,16 +56,10 @@ def paint_scene(
     """Paint a solution of a scene, and ask the scene about every vertex that is new.
 
     Args:
-        built: the scene and its labelled surface.
-        decomposition: of the built surface.
-        solution: of that, with a division.
         tool_radius_m: of the footprint; None for that of the setup, or for one mean mesh edge.
-        deadline: when to give up.
-        progress: told what is being done.
 
     Raises:
         InputError: the solution has no division, or the radius is not positive.
-        OutOfTime: the deadline came first.
         TooLarge: a painting would need too many vertices.
     """
     prepared = built.prepared
@@ -109,8 +101,6 @@ def _refused(painted: Painted, finer: BuildResult, branch: Index) -> tuple[int, 
     """The vertices where the scene refuses a painting (:class:`~cellcolor.painting.paint.Painted`).
 
     Args:
-        painted: the painting.
-        finer: the build of its surface.
         branch: (colors,) of each of its colors.
     """
     colors = painted.plan.vertex_colors

@@ -31,12 +31,8 @@ class Ground:
     """What the strokes of all segments have in common.
 
     Attributes:
-        prepared: the scene.
         segments: of the painted surface.
         states: what the arm does at the corners of its small triangles.
-        pattern: of the tool paths.
-        motion: of the setup.
-        deadline: when to give up.
     """
 
     prepared: PreparedScene
@@ -55,17 +51,9 @@ def strokes_of(
     They go beyond the segment's border if neighbors are to overlap and one stroke is enough then.
     Walls are put up only where a joint would exceed its limits without them.
 
-    Args:
-        ground: what they are made on.
-        segment: its number.
-        branch: of its color.
-
     Returns:
         Its tool paths, the strokes on them, each within the limits of the joints, and the walls,
         mesh edges, that were put up for that.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     segments, motion, space = ground.segments, ground.motion, joint_space(ground.prepared)
     own = segments.segment_of == segment
@@ -137,7 +125,7 @@ def _between_walls(
     if joint is not None:
         text = f"{names[joint]} cannot follow the whole segment"
         for at in range(parted, len(strokes)):
-            parting = Parting.at("winding", text, strokes[at].points[0])
+            parting = Parting("winding", text, strokes[at].points[0])
             strokes[at] = replace(strokes[at], parting=parting)
     cut = [part for stroke in strokes for part in cut_where_full(stroke, space, names)]
     return covered, _worth_a_lift_off(cut, ground.motion.spacing_m), walls
@@ -153,7 +141,7 @@ def _on(ground: Ground, courses: list[Course], branch: int) -> list[Stroke]:
         parts = trimmed(segment, branch, course.samples, course.followed, spacing, names, space)
         if parts and found:
             text = "places that no sample may touch divide the segment"
-            parting = Parting.at("trimmed", text, course.path.points[0])
+            parting = Parting("trimmed", text, course.path.points[0])
             parts[0] = replace(parts[0], parting=parting)
         found += parts
     return _worth_a_lift_off(found, spacing)

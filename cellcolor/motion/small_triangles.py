@@ -71,7 +71,6 @@ class CornerStates:
         joints: (6 m, 3, joints) in rad or m, those of the second and the third corner unwound
             from the first; NaN without solution or segment.
         reasons: (6 m, 3) codes of the judge: the first test that each corner fails.
-        space: of the joints.
         wound: (6 m,) whether the angles do not return after one turn: the branch jumps inside.
     """
 
@@ -94,9 +93,6 @@ def corner_states(
 
     Args:
         branch_of: (segments,) the branch of each segment's color.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     own = np.flatnonzero(small.segment >= 0)
     branches = int(branch_of.max(initial=0)) + 1

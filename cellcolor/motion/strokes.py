@@ -26,13 +26,7 @@ class Parting:
 
     reason: str
     text: str
-    place: tuple[float, float, float]
-
-    @classmethod
-    def at(cls, reason: str, text: str, point: Array) -> Parting:
-        """One at a point (3,)."""
-        x, y, z = point.tolist()
-        return cls(reason, text, (x, y, z))
+    place: Array
 
 
 @dataclass(frozen=True)
@@ -121,8 +115,6 @@ def trimmed(
 
     Args:
         shortest: shorter pieces are left out, m.
-        names: of the codes of the judge.
-        space: of the joints.
     """
     good = followed.reasons == VALID
     if not good.any():
@@ -144,7 +136,7 @@ def trimmed(
                 "the branch jumps" if good[at] else f"samples fail: {names[followed.reasons[at]]}"
             )
             text = f"the path was cut where {cause}"
-            stroke = replace(stroke, parting=Parting.at("trimmed", text, samples.points[at]))
+            stroke = replace(stroke, parting=Parting("trimmed", text, samples.points[at]))
         found.append(stroke)
     return found
 
@@ -184,4 +176,4 @@ def _full(
     joints = np.concatenate([before.joints, stroke.joints[sample : sample + 2]])
     joint = next((number for number, own in enumerate(space.turns(joints)) if not len(own)), 0)
     text = f"{names[joint]} would run out of its limits"
-    return Parting.at("winding", text, stroke.points[sample])
+    return Parting("winding", text, stroke.points[sample])

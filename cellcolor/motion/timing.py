@@ -47,7 +47,6 @@ def timed(
 
     Args:
         joints: (k, joints) rad or m, unwound, neighbors near each other.
-        speeds: of the joints.
         points: (k, 3) where the tip is, m; only with a speed of the tool.
         tool_speed: the tool goes no faster, m/s; one number, or one for each step (k - 1,).
     """

@@ -77,9 +77,8 @@ class Transfers:
             self._at_home = self.home[None]
         self._ways = Ways(prepared, motion, velocities, self.home, seed, deadline)
         self._space = self._ways.space
-        self._shares: dict[
-            bytes, float
-        ] = {}  # by both ends: how much of a straight move is blocked
+        # By both ends, how much of a straight move is blocked.
+        self._shares: dict[bytes, float] = {}
 
     def between_strokes(self, strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Transfer]]:
         """The strokes with their ends and turns chosen, and all motions without contact.
@@ -87,12 +86,6 @@ class Transfers:
         These are the way to the first stroke, those between strokes, and the way from the last
         one. Without a home position the first begins, and the last ends, where the tool is
         retracted.
-
-        Args:
-            strokes: in their order.
-
-        Raises:
-            OutOfTime: the deadline came first.
         """
         reachable = [self._led(self._reachable(stroke)) for stroke in strokes]
         visits = [self._visit(one) for one in reachable]

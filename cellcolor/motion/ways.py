@@ -53,7 +53,6 @@ class Ways:
 
     Attributes:
         levels: where the arm keeps its clearance, and less and less of it.
-        space: of the joints.
     """
 
     def __init__(
@@ -94,9 +93,6 @@ class Ways:
 
         Args:
             start, end: (joints,) both inside the limits.
-
-        Raises:
-            OutOfTime: the deadline came first.
         """
         levels = self.level(start), self.level(end)
         if max(levels) == len(_SHARES):
@@ -213,9 +209,6 @@ def quickest_way(
     Args:
         seconds: (n, n) how long each move takes, above 0.
         is_free: whether there is a move from one node to another; asked once of each.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     kept = seconds.argsort(axis=1).argsort(axis=1) <= _NEIGHBORS
     kept[:2], kept[:, :2] = True, True

@@ -22,8 +22,7 @@ class BetterPainting:
     Attributes:
         painted: on the surface, refined where it had to be.
         on_mesh: a plan for the mesh as it was.
-        segments_on_mesh: how many segments that has; more than ``painted.segments`` where the mesh
-            is too coarse.
+        segments_on_mesh: of that; more than ``painted.segments`` where the mesh is too coarse.
     """
 
     painted: Painted
@@ -36,8 +35,7 @@ class Improvement:
     """How a plan can have fewer segments.
 
     Attributes:
-        joined: two segments of the plan that can be one, numbered by their first vertices, 0 being
-            that of the first vertex with a color.
+        joined: two segments of the plan that can be one, numbered by their first vertices.
         places: a vertex of each, well inside what can be joined.
         better: the painting that joins them.
     """
@@ -67,11 +65,7 @@ class Improvement:
 
 
 def better_painting(surface: LabelledSurface, painted: Painted) -> BetterPainting:
-    """A painting, and the plan on the mesh as it was that it leaves.
-
-    Args:
-        painted: its painting; the vertices of the surface come first.
-    """
+    """A painting of a surface, whose vertices come first in it, and what it leaves on the mesh."""
     on_mesh = Plan(painted.plan.vertex_colors[: len(surface.vertices)])
     segments = check_plan(surface, on_mesh).segments
     assert segments is not None  # every vertex has one of its colors
@@ -83,8 +77,7 @@ def improvement_of(
 ) -> Improvement | None:
     """Which two segments of a plan the better painting has in one.
 
-    There are two, since it has fewer. Of all such pairs it is the one whose smaller part within
-    the better segment is largest.
+    Of all such pairs it is the one whose smaller part within the better segment is largest.
 
     Args:
         segment_of: (n,) the plan's segment of each vertex, -1 where it has no color.
@@ -97,11 +90,8 @@ def improvement_of(
     if better.painted.segments >= len(set(old[old >= 0].tolist())):
         return None
     new = better.painted.segment_of[: len(old)]
-    found = [
-        _largest_pair(surface, old, np.flatnonzero(new == number))
-        for number in range(int(new.max()) + 1)
-    ]
-    pairs = [pair for pair in found if pair is not None]
+    inside = (np.flatnonzero(new == number) for number in range(int(new.max()) + 1))
+    pairs = [pair for own in inside if (pair := _largest_pair(surface, old, own)) is not None]
     if not pairs:
         return None
     _, joined, places = max(pairs)
@@ -113,7 +103,8 @@ def _largest_pair(
 ) -> tuple[tuple[float, int], tuple[int, int], tuple[int, int]] | None:
     """The two segments with the most area among some vertices, and a vertex of each.
 
-    Where triangles are flat to a line there is no area; then most vertices.
+    Where triangles are flat to a line there is no area; then most vertices. Both numbers of the
+    smaller one come first.
     """
     numbers, counts = np.unique(old[inside], return_counts=True)
     if len(numbers) < 2:
@@ -122,12 +113,11 @@ def _largest_pair(
     order = np.lexsort((counts, areas))[-2:]
     second, first = numbers[order].tolist()
     pair = min(first, second), max(first, second)
-    places = [_middle(surface, inside[old[inside] == number]) for number in pair]
+    places = []
+    for number in pair:
+        vertices = inside[old[inside] == number]
+        points = surface.vertices[vertices]
+        nearest = np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1))
+        places.append(int(vertices[nearest]))
     smaller = float(areas[order[0]]), int(counts[order[0]])
     return smaller, pair, (places[0], places[1])
-
-
-def _middle(surface: LabelledSurface, vertices: Index) -> int:
-    """The vertex that is nearest to the mean of some vertices."""
-    points = surface.vertices[vertices]
-    return int(vertices[np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1))])

@@ -22,19 +22,15 @@ from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_document, sha256_of
 from cellcolor.oracle.ranges import Proof
-from cellcolor.solvers.interface import STRANDS
 
 
 @dataclass(frozen=True)
 class ProofCache:
     """A folder with a file for each surface, named by a fingerprint.
 
-    The fingerprint covers the surface's content, cellcolor's own source and the search space. If
-    any of them changes, the surface is proved again. A file holds solutions and the time limit
-    under which they were found. It holds no bounds: those are computed when it is read.
-
-    Attributes:
-        folder: where the files are.
+    The fingerprint covers the surface's content and cellcolor's own source. If one of them changes,
+    the surface is proved again. A file holds solutions and the time limit under which they were
+    found. It holds no bounds: those are computed when it is read.
     """
 
     folder: Path
@@ -45,16 +41,12 @@ class ProofCache:
         The checker counts the upper end of the range. The lower end is the best bound whose
         certificate the checker verifies; a larger bound without one goes into ``kept_lower``.
 
-        The surface has to be proved again if
-
-        - there is no file, the file cannot be read, or the checker rejects one of its solutions;
-        - a verified bound exceeds the upper end, so that one of the two is wrong;
-        - lower and upper end differ, and the time limit is longer than the one of that proof;
-        - the deadline comes first.
+        The surface has to be proved again if there is no file that can be read in time, if the
+        checker rejects one of its solutions, if a verified bound exceeds the upper end, so that one
+        of the two is wrong, or if the ends differ, and that proof had less time.
 
         Args:
             seconds: the time limit that a new proof would have.
-            deadline: when to give up reading and checking.
         """
         file = self._file(surface)
         if not file.is_file():  # opening a pipe would block
@@ -64,7 +56,9 @@ class ProofCache:
             solutions, earlier = kept.get("solutions"), kept.get("seconds")
             if type(earlier) is not float or not isinstance(solutions, list) or not solutions:
                 return None
-            found = [_solution(document) for document in solutions]
+            if not all(isinstance(document, dict) for document in solutions):
+                return None
+            found = [Solution.from_document(document) for document in solutions]
             decomposition = decomposition_of(surface, None, deadline)
             instance = decomposition.instance
             regions = regions_on_surface(surface, decomposition.vertex_cell)
@@ -118,24 +112,13 @@ class ProofCache:
                 written.unlink(missing_ok=True)
 
     def _file(self, surface: LabelledSurface) -> Path:
-        depends_on = {
-            "surface": surface.sha256,
-            "code": _code(),
-            "search_space": "surface",
-            "strands": STRANDS["surface"],
-        }
+        depends_on = {"surface": surface.sha256, "code": _code()}
         return self.folder / f"{sha256_of(depends_on)}.json"
-
-
-def _solution(document: object) -> Solution:
-    if not isinstance(document, dict):
-        raise InputError(None, "solutions", "must be solutions")
-    return Solution.from_document(document)
 
 
 @cache
 def _code() -> str:
-    """The fingerprint of the package's source; computing it takes some hundredths of a second."""
+    """The fingerprint of the package's source."""
     folder, digest = Path(cellcolor.__file__).parent, hashlib.sha256()
     for file in sorted(folder.rglob("*.py")):
         content = file.read_bytes()

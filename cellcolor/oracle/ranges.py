@@ -25,11 +25,9 @@ class Proof:
     Attributes:
         bounds: the range that they lie in.
         decomposition: the topological graph on the surface; None if there was no time for it.
-        solution: of the divisions found the one with the fewest segments; None if there was no
-            time to look for one.
+        solution: the one with the fewest segments that was found.
         found: all solutions that were found; their bounds are what the lower end rests on.
-        kept_lower: a greater lower bound that was kept on disk and that nothing has verified, so
-            that it is not in ``bounds``; None if there is none.
+        kept_lower: a greater lower bound that was kept on disk and that nothing has verified.
     """
 
     bounds: ProvenRange
@@ -51,8 +49,7 @@ def prove(
 
     Args:
         deadline: when to return what is proved; both ends hold however early that is.
-        strands: corridors that may cross one topological edge, None for the usual number; more
-            may lower ``upper``.
+        strands: corridors that may cross one topological edge, None for the usual number.
         workers: CP-SAT's search workers, None for its portfolio.
 
     Raises:
@@ -73,8 +70,7 @@ def prove(
         reached = sum(map(bool, surface.vertex_colors))
         return Proof(ProvenRange(min(reached, 1), reached))
     instance = decomposition.instance
-    # One sub-cell a cell is a division of its own, whatever the solver finds.
-    upper = len(instance.cells)
+    upper = len(instance.cells)  # one sub-cell a cell is a division as well
     lower = min(upper, 1)
     best: Solution | None = None
     found: list[Solution] = []

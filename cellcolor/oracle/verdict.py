@@ -30,12 +30,10 @@ class Verdict:
             and nothing was proved.
         violations: those of the problems that are about a vertex, with its place.
         improvement: a plan with fewer segments, and what it joins; None where none is known.
-        why: of an optimal plan why there cannot be fewer segments, a clause; None where nothing
-            needs a reason or none is known.
+        why: of an optimal plan why there cannot be fewer segments, a clause, if that is known.
         late: whether the time limit came before it was known which segments can be joined.
         kept_lower: a lower bound that was kept on disk without a certificate, greater than that in
-            ``bounds``: it is not verified, and nothing here rests on it. None if there is none.
-        surface: what the plan is on.
+            ``bounds``: nothing has verified it, and nothing here rests on it.
         plan: what was judged, of a plan in joint angles the colors that it comes to, -1 where a
             configuration has none; None for a solution.
     """
@@ -74,11 +72,9 @@ class Verdict:
     def beatable_by(self) -> int | None:
         """How many segments fewer are proved to be enough.
 
-        0 only if it is proved that no division of the surface has fewer, so that running out of
-        time passes for nothing; None where neither is proved, or when the plan is not valid.
-
-        The division that proves it cuts the surface itself. A mesh may be too coarse to paint it
-        in vertices: :attr:`on_mesh` has the range for plans on the mesh as it is.
+        0 only if it is proved that no division of the surface has fewer; None where neither is
+        proved, or when the plan is not valid. The division that proves it cuts the surface itself:
+        :attr:`on_mesh` has the range for plans on the mesh, which may be too coarse for it.
         """
         if self.segments is None or self.bounds is None:
             return None
@@ -135,10 +131,9 @@ class Verdict:
                 where = f"; {self.improvement}"
             fewer = count(self.beatable_by, "fewer is", "fewer are")
             return f"{found}, {fewer} proved to be enough{where}"
-        kept = (
-            "" if self.kept_lower is None else f"; kept, not verified: at least {self.kept_lower}"
-        )
-        return f"{found}, not known to be optimal; the fewest are {self.bounds}{kept}"
+        text = f"{found}, not known to be optimal; the fewest are {self.bounds}"
+        kept = self.kept_lower
+        return text if kept is None else f"{text}; kept, not verified: at least {kept}"
 
     def __repr__(self) -> str:
         # What pytest prints of ``assert verdict.optimal, verdict``.
@@ -150,8 +145,7 @@ class JointViolation(PlanViolation):
     """Why a configuration, or the lack of one, is wrong at a vertex.
 
     Attributes:
-        joints: the configuration, rad; None if there is none.
-        prismatic: the joints whose positions are in m.
+        joints: the configuration, rad, but in m for those that are ``prismatic``.
     """
 
     joints: tuple[float, ...] | None = None
@@ -159,13 +153,14 @@ class JointViolation(PlanViolation):
 
     def __str__(self) -> str:
         place = ", ".join(f"{part:.3f}" for part in self.place)
+        text = f"vertex {self.vertex} at ({place}) m: {self.reason}"
         if self.joints is None:
-            return f"vertex {self.vertex} at ({place}) m: {self.reason}"
+            return text
         joints = ", ".join(
             f"{value:.4f}" + (" m" if joint in self.prismatic else "")
             for joint, value in enumerate(self.joints)
         )
-        return f"vertex {self.vertex} at ({place}) m: {self.reason}; joints ({joints}) rad"
+        return f"{text}; joints ({joints}) rad"
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -200,10 +195,10 @@ class PathVerdict(Verdict):
 
     @property
     def needed(self) -> int | None:
-        """What is compared with the fewest segments: of two numbers the greater one.
+        """What is compared with the fewest segments; None if the path is not compared.
 
-        They are the strokes, cut where the color changes in contact, and the segments of the
-        plan. None if the path is not compared.
+        It is the greater one of the strokes, cut where the color changes in contact, and the
+        segments of the plan.
         """
         if self.segments is None:
             return None
@@ -211,15 +206,12 @@ class PathVerdict(Verdict):
 
     @property
     def optimal(self) -> bool | None:
-        """True: proved that no division has fewer segments than :attr:`needed`. False: one has.
-
-        None: neither is proved, or the path is not compared.
-        """
+        """As for a plan, of :attr:`needed`."""
         return self._compared.optimal
 
     @property
     def beatable_by(self) -> int | None:
-        """How many segments fewer than :attr:`needed` are proved to be enough, as for a plan."""
+        """As for a plan: how many segments fewer than :attr:`needed` are proved to be enough."""
         return self._compared.beatable_by
 
     @property
@@ -240,10 +232,10 @@ class PathVerdict(Verdict):
         if self.segments is None:
             return f"{path}\nnot comparable: {self._why_not}"
         lines = [path, f"its colors: {self.of_colors}"]
-        if self.strokes + self.color_changes > self.segments:
-            more = self.strokes + self.color_changes - self.segments
+        more = self.strokes + self.color_changes - self.segments
+        if more > 0:
             lines.append(f"its colors need {count(more, 'lift-off')} fewer than the path has")
-        elif self.strokes + self.color_changes < self.segments:
+        elif more < 0:
             lines.append(
                 "its strokes are fewer than these segments: it jumps between vertices that are not "
                 "neighbors, or crosses what it covered in another color"

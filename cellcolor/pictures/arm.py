@@ -8,10 +8,9 @@ from cellcolor.arrays import Array, Index
 from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult
-from cellcolor.frontend.arm.body import Body
+from cellcolor.frontend.arm.body import Body, Shape
 from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.tip import HalfSpace
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.pictures.mesh_picture import eye
 from cellcolor.pictures.picture import FAINT, Layer, Picture3D, SpaceLines, Text
@@ -142,13 +141,14 @@ def _round(body: Body) -> _Mesh:
     return made.vertices @ turn.T + middle, made.faces.astype(np.int64)
 
 
-def grid(ground: HalfSpace, points: Array) -> SpaceLines:
+def grid(ground: Shape, points: Array) -> SpaceLines:
     """The part of the ground below everything else as a grid, in pieces that sort by depth."""
     low, high = points.min(axis=0) - 0.05, points.max(axis=0) + 0.05
     x, y = (np.linspace(low[axis], high[axis], _GRID) for axis in (0, 1))
     x, y = np.meshgrid(x, y, indexing="ij")
-    nx, ny, nz = ground.normal
-    knots = np.stack([x, y, (ground.offset_m - nx * x - ny * y) / nz], axis=2)
+    nx, ny, nz = ground.rotation[:, 2]
+    off_m = ground.origin @ ground.rotation[:, 2]
+    knots = np.stack([x, y, (off_m - nx * x - ny * y) / nz], axis=2)
     along_x = np.stack([knots[:-1], knots[1:]], axis=2).reshape(-1, 2, 3)
     along_y = np.stack([knots[:, :-1], knots[:, 1:]], axis=2).reshape(-1, 2, 3)
     return SpaceLines("ground", GROUND, np.concatenate([along_x, along_y]))

@@ -277,7 +277,7 @@ def minima_at(
 def stands_in(prepared: PreparedScene) -> str | None:
     """What the part is in or touches: the ground or an obstacle; None if nothing."""
     vertices, ground = prepared.surface.vertices, prepared.ground
-    if ground is not None and (ground.along(vertices) < ground.offset_m).any():
+    if ground is not None and (ground.heights(vertices) < 0).any():
         return "the ground"
     for number, solid in enumerate(prepared.obstacles, 1):
         if meet(solid, prepared.target):

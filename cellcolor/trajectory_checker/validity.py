@@ -43,7 +43,7 @@ _PRIMITIVES = {
 def pairs_of(place: Workplace) -> dict[str, list[Pair]]:
     """What is tested, by the names of the tests."""
     robot, margins, exempt = place.robot, place.setup.margins, place.setup.robot.may_touch_ground
-    ground = [] if place.ground is None else [place.ground.shape]
+    ground = [] if place.ground is None else [place.ground]
     free = [body for body in robot.bodies if body.link not in exempt]
     moving = [body for body in robot.bodies if body.joint > 0]
     around = [*ground, *place.obstacles]

@@ -58,14 +58,6 @@ def path_over(
     return raster(surface, mesh.vertex_normals, there, angle, SPACING)
 
 
-def steps(path: Raster) -> Array:
-    """The middles of all steps along the path."""
-    middles = (path.points[1:] + path.points[:-1]) / 2
-    kept = np.ones(len(middles), dtype=bool)
-    kept[path.starts[1:] - 1] = False
-    return np.asarray(middles[kept])
-
-
 @pytest.mark.parametrize("angle", ANGLES)
 def test_a_square(angle: float) -> None:
     """Straight passes at the spacing; seen from the middle, so that none is longer than needed."""
@@ -81,18 +73,3 @@ def test_a_square(angle: float) -> None:
     # Passes have the area divided by the spacing as their length; ways between add less than two
     # borders of the square.
     assert 0.95 * 0.16 / SPACING < length.sum() < 0.16 / SPACING + 2 * 1.6
-
-
-@pytest.mark.parametrize("angle", ANGLES)
-def test_a_closed_surface(angle: float) -> None:
-    """Every step lies on the mesh, and normals are interpolated."""
-    mesh = trimesh.creation.icosphere(subdivisions=3, radius=0.1)
-    path = path_over(mesh, angle)
-    assert path.starts.tolist() == [0]
-    for place in steps(path)[::31]:
-        on_each = trimesh.triangles.closest_point(
-            mesh.triangles, np.tile(place, (len(mesh.faces), 1))
-        )
-        assert np.linalg.norm(on_each - place, axis=1).min() < 1e-9
-    assert np.einsum("ij,ij->i", path.normals, path.points / 0.1).min() > 0.98
-    assert np.allclose(np.linalg.norm(path.normals, axis=1), 1.0)

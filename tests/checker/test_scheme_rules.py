@@ -14,7 +14,6 @@ from holes import Painted
 from rooms import BLUE, GREEN, RED, graph, hub, petal_cells
 
 from cellcolor.checker import division as checker
-from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
 
@@ -52,27 +51,6 @@ GRAPHS = {
     ),
     "bands": graph((ALL, (1, 2, 3), (4, 5, 6)), *petal_cells(RED, BLUE, GREEN, RED, BLUE, GREEN)),
 }
-
-
-def consistent(instance: Instance) -> Iterator[tuple[Painted, ...]]:
-    """Every choice of edges in state 1, of their colors, and of sub-cells, crossing or not."""
-    live = sorted(instance.live_edges)
-    for colors in itertools.product(*([None, *sorted(instance.joinable(edge))] for edge in live)):
-        color = {edge: own for edge, own in zip(live, colors, strict=True) if own is not None}
-        yield from itertools.product(
-            *(list(divisions_of(instance, cell, color)) for cell in instance.cells)
-        )
-
-
-def divisions_of(instance: Instance, cell: Cell, color: dict[int, int]) -> Iterator[Painted]:
-    joined = [d for loop in holes.live_loops(instance, cell) for d in loop if abs(d) in color]
-    if not joined:
-        yield from (frozenset([(own, frozenset[int]())]) for own in cell.colors)
-        return
-    classes = [[d for d in joined if color[abs(d)] == own] for own in sorted(set(color.values()))]
-    for chosen in itertools.product(*(holes.set_partitions(own) for own in classes if own)):
-        blocks = [block for partition in chosen for block in partition]
-        yield frozenset((color[abs(block[0])], frozenset(block)) for block in blocks)
 
 
 def anything(instance: Instance) -> Iterator[tuple[Painted, ...]]:
@@ -116,10 +94,10 @@ def is_legal(instance: Instance, painting: Sequence[Painted]) -> bool:
 def defined(name: str) -> list[tuple[Division, bool]]:
     """Divisions of a graph, and whether each is a scheme."""
     instance = GRAPHS[name]
-    drawn = anything if len(instance.cells) < 3 else consistent
+    tiny = len(instance.cells) < 3
     return [
         (holes.as_division(one), is_legal(instance, one) and holes.is_scheme(instance, one))
-        for one in drawn(instance)
+        for one in (anything(instance) if tiny else holes.divisions(instance, crossing=True))
     ]
 
 

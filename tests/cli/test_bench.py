@@ -17,8 +17,7 @@ from commands import run
 from guides import install
 from library import PAPER
 
-from cellcolor.lab.runs.row import Row
-from cellcolor.lab.runs.table import read_table
+from cellcolor.lab.runs.table import Row, read_table
 from cellcolor.lab.workers import Task
 from cellcolor.solvers.registry import GROUP
 

@@ -22,7 +22,7 @@ from meshes import (
     surfaces,
     torus,
 )
-from relabelled import isomorphic
+from relabelled import isomorphic, mirrored
 
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.instance import Instance
@@ -46,14 +46,6 @@ class Asked(Deadline):
 
 
 BUILT_CASES = sorted(PAPER.glob("*.surface.json"))
-
-
-def mirrored(instance: Instance) -> Instance:
-    """The graph of the mirror image: loops run the other way, and so does every edge."""
-    cells = tuple(
-        replace(cell, loops=tuple(loop[::-1] for loop in cell.loops)) for cell in instance.cells
-    )
-    return replace(instance, cells=cells)
 
 
 def with_loops(instance: Instance, cell: int, *loops: tuple[int, ...]) -> Instance:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from library import INSTANCES, PAPER
+from library import PAPER
 from meshes import drawn
 
 from cellcolor import judge, proven_range
@@ -29,19 +28,6 @@ def halves(surface: LabelledSurface) -> Plan:
         wanted = RED if y > middle else BLUE
         colors.append(wanted if wanted in available else next(iter(available), None))
     return Plan(tuple(colors))
-
-
-@pytest.mark.parametrize(
-    "path",
-    sorted((INSTANCES / "scenes" / "feasibility").glob("*.surface.json"))
-    + sorted((INSTANCES / "random").glob("*.surface.json")),
-    ids=lambda path: path.name.partition(".")[0],
-)
-def test_minima_found_elsewhere(path: Path) -> None:
-    """With all the time it needs the range ends at or below the paper's known minimum."""
-    surface = LabelledSurface.read(path)
-    bounds = proven_range(surface, time_limit=None)
-    assert bounds.lower <= bounds.upper <= surface.meta["known_paper_segments"]
 
 
 def test_the_papers_search_space_is_not_the_measure() -> None:

@@ -20,15 +20,7 @@ FUNCTIONS: dict[str, Any] = {
     "save": RESULT.save,
     "plot": lambda name: RESULT.plot(name),
     "drawing": lambda name: RESULT.plot().save(name),
-    **{
-        kind.__name__: kind.read
-        for kind in (
-            cellcolor.Instance,
-            cellcolor.LabelledSurface,
-            cellcolor.Plan,
-            cellcolor.Solution,
-        )
-    },
+    "Instance": cellcolor.Instance.read,
 }
 
 

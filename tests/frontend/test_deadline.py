@@ -91,29 +91,6 @@ def test_no_instance_in_time_is_unknown(
         assert not out.exists()
 
 
-def test_progress_by_stage_on_a_terminal(
-    part: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    command = ["build", str(part), "-o", str(tmp_path / "out.json")]
-    assert main(command) == 0
-    assert "continuity" not in capsys.readouterr().err
-    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
-    monkeypatch.setattr("rich.console.Console.is_terminal", True)
-    monkeypatch.setattr("rich.progress.Progress.update", shown := Shown())
-    assert main(command) == 0
-    assert [text.partition(": ")[2] for text in shown.texts] == STAGES
-
-
-class Shown:
-    """Takes the place of the display's update, and keeps what it was told."""
-
-    def __init__(self) -> None:
-        self.texts: list[str] = []
-
-    def __call__(self, _task: object, description: str) -> None:
-        self.texts.append(description)
-
-
 def test_a_prepared_scene_outlives_the_deadline_that_it_was_prepared_by() -> None:
     """No deadline is part of it: what is asked later has a deadline of its own, or none."""
     soon = Deadline.after(2.0)

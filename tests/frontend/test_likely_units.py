@@ -132,14 +132,6 @@ def test_accelerations_in_degrees_are_said(scene: Varied, quickest: float, said:
     assert bool(found) == said
 
 
-def test_what_is_large_but_may_be_meant(scene: Varied) -> None:
-    """A wing of 10 m before an arm of 1 m, and its far end."""
-    wing = scene(radius_m=5.5, position_m=(5.0, 0.0, 0.0))
-    surface = wing.covered().placed(wing.placement)
-    assert np.ptp(surface.vertices, axis=0).max() > 9.9
-    check_part(surface, wing, 1.0, np.zeros(3))
-
-
 @pytest.mark.parametrize("times", [19.9, 20.1])
 def test_the_limit_is_twenty_reaches(scene: Varied, times: float) -> None:
     """Of size, and of distance: of a cap the widest extent is 2 r sin(half angle)."""
@@ -163,11 +155,3 @@ def test_no_shipped_scene_is_refused() -> None:
     for file in files:
         prepared = prepare(file)
         assert not [note for note in prepared.notes if "looks like" in note], file
-
-
-def test_joint_limits_of_a_full_turn_and_more(scene: Varied) -> None:
-    """Joints turn by a full circle either way, some by more: such homes are no degrees."""
-    home = (2 * math.pi - 1e-9, -1.5, 1.5, 0.0, 0.0, 0.0)
-    assert motion_of(prepare(scene(setup={"home_rad": home}))).home_rad == home
-    full = scene(rpy_rad=(6.2832, -6.2832, 0.0))
-    assert full.placement.rpy_rad[0] == 6.2832

@@ -28,19 +28,6 @@ def turned_over(surface: Surface) -> Surface:
     return replace(surface, faces=surface.faces[:, ::-1].copy(), normals=-surface.normals)
 
 
-def test_size_and_distance_are_those_of_the_faces(geometry: UrGeometry) -> None:
-    """A plate under the robot, whose corners are far away."""
-    plate = Surface(
-        np.array([[-1.0, -2, -0.18], [1, -2, -0.18], [1, 2, -0.18], [-1, 2, -0.18]]),
-        np.array([[0, 1, 2], [0, 2, 3]]),
-        np.tile([0.0, 0, 1], (4, 1)),
-    )
-    found = survey(plate, geometry.viewpoints, np.zeros(3))
-    assert found.size_m == pytest.approx([2, 4, 0])
-    assert found.distance_m == pytest.approx(0.18)
-    assert str(found) == "2 x 4 x 0 m, nearest point 0.18 m from the robot's base"
-
-
 @pytest.mark.parametrize(
     ("scale", "text"), [(0.001, "0.002 x 0.004 x 0 m"), (100.0, "200 x 400 x 0 m")]
 )

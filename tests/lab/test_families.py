@@ -6,7 +6,6 @@ from collections import Counter
 from typing import Any
 
 import networkx as nx
-import numpy as np
 import pytest
 import trimesh
 from exhaustive_minima import minimum, noncrossing
@@ -38,28 +37,6 @@ from cellcolor.solvers.interface import Options
 from examples import examples
 
 pytestmark = pytest.mark.second
-
-
-def test_blobs_have_the_size_of_a_robot_scene() -> None:
-    """24 x 24 points and 6 colors: some dozens of cells, most with several colors."""
-    counts = []
-    for seed in range(20):
-        surface = blobs(seed)
-        assert len(surface.vertices) == 24 * 24 and len(surface.faces) == 2 * 23 * 23
-        instance = decompose(surface)
-        counts.append(len(instance.cells))
-        assert {color for cell in instance.cells for color in cell.colors} == set(range(6))
-        assert sum(len(cell.colors) > 1 for cell in instance.cells) > len(instance.cells) / 2
-    assert min(counts) >= 20 and max(counts) <= 60 and 26 <= np.median(counts) <= 48
-
-
-def test_rim_touches_the_border_and_islands_make_loops() -> None:
-    for seed in range(10):
-        rim = decompose(blobs(seed, 16, 3, coverage=(1.0, 1.0), rim=1))
-        assert sorted(len(cell.colors) for cell in rim.cells) == [1, 3]
-        assert all(len(cell.loops) == 1 for cell in rim.cells)
-    islands = [decompose(blobs(seed, 16, 3, coverage=(1.0, 1.0), islands=1)) for seed in range(10)]
-    assert any(len(cell.loops) == 2 for instance in islands for cell in instance.cells)
 
 
 def test_cracks_lie_where_colors_are_common() -> None:
@@ -209,15 +186,6 @@ def test_grown_colors_are_connected(scattered: bool, least: int, most: int) -> N
         own = [v for v, colors in enumerate(surface.vertex_colors) if color in colors]
         parts += nx.number_connected_components(mesh.subgraph(own))
     assert least <= parts <= most
-
-
-def test_hub_with_loops_has_a_ring_round_each() -> None:
-    instance = hub_with_loops(3, 5, 4, 4)
-    assert len(instance.cells) == 21
-    assert [len(loop) for loop in instance.cells[0].loops] == [4] * 5
-    for loop in instance.cells[0].loops:
-        ring = [instance.cells[instance.across(dart)].colors[0] for dart in loop]
-        assert all(a != b for a, b in zip(ring, ring[1:] + ring[:1], strict=True))
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 
 from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError
-from cellcolor.lab.runs.row import Row, compared, disagreements
 from cellcolor.lab.runs.summary import (
     contestants_of,
     median_seconds,
@@ -26,7 +25,7 @@ from cellcolor.lab.runs.sweep import (
     of_family,
     taking_turns,
 )
-from cellcolor.lab.runs.table import TableFile, read_table
+from cellcolor.lab.runs.table import Row, TableFile, compared, disagreements, read_table
 
 ROW = Row(
     family="f",
@@ -130,13 +129,6 @@ class TestSummary:
         assert "| f | 8.0 | 14.0 |" in text  # 24 and 42 by three
         assert "Open: 1 instance" in text and "| f, seed 3 | 4 | 3 (cp-sat) | 2 (cp-sat) |" in text
 
-    def test_only_what_all_have_tried_is_compared(self) -> None:
-        text = self.text(times("cp-sat", 1.0, 2.0) + times("x", 1.0))
-        assert "1 run left out" in text and "| f | 1/1 | 1/1 |" in text
-        assert "| f | 2/2 | 1/1 |" in self.text(
-            [*times("cp-sat", 1.0, 2.0), *(replace(r, sha256="b" * 64) for r in times("x", 1.0))]
-        )
-
     def test_contradictions_come_first(self) -> None:
         text = self.text([ROW, replace(ROW, solver="x", segments=3, lower_bound=3)])
         assert "**1 contradiction:**" in text.partition("##")[0]
@@ -235,12 +227,3 @@ class TestSubjects:
         ]
         made = groups[0][1].make()
         assert isinstance(made, Instance) and made.sha256 == groups[0][1].make().sha256
-
-    def test_growing_families_grow_and_say_where_they_end(self) -> None:
-        for name, seeds in (("blobs", (0, 8, 16)), ("hubs", (0, 3, 9)), ("grids of hubs", (0, 2))):
-            subjects = of_family(f"growing/{name}", seeds)
-            sizes = [len(subject.make().cells) for subject in subjects]
-            assert sizes == sorted(set(sizes))
-        (beyond,) = of_family("growing/grids of hubs", (99,))
-        with pytest.raises(InputError, match="grids of hubs have seeds 0 to"):
-            beyond.make()

@@ -152,17 +152,6 @@ def test_shares_are_those_that_a_point_was_made_with(seed: int, count: int) -> N
     assert np.allclose(mesh.shares(triangles, points), shares)
 
 
-def test_what_is_computed_cannot_be_changed() -> None:
-    """It is kept: whoever changed it would change it for all."""
-    mesh = bumpy_ball(0)
-    names = "edges edge_of_side triangles_at lengths areas area_vectors triangle_normals"
-    for name in [*names.split(), "vertex_areas", "vertex_normals", "border"]:
-        array = getattr(mesh, name)
-        assert array is getattr(mesh, name)
-        with pytest.raises(ValueError, match="read-only"):
-            array[0] = array[0]
-
-
 def test_a_mesh_without_triangles() -> None:
     mesh = TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64))
     assert mesh.edges.shape == (0, 2) and mesh.pairs[1].shape == (0, 2)

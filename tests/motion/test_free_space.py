@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import rasters
 from shipped import shipped
-from world import KINDS, PAIRS, World, standing
+from world import KINDS, World, standing
 
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Ground, Scene
@@ -51,37 +51,6 @@ def test_what_is_clear_without_it_is_clear_with_it_where_it_is_far(
     assert clear.any() and not clear.all()
     far = gap > CLEARANCE + 0.02  # the tip's region ends within 16 mm of the tool's body
     assert clear[far].all()
-
-
-@pytest.mark.parametrize(
-    ("key", "margin"), [("to_object_m", 0.03), ("between_links_m", 0.004), ("to_ground_m", 0.02)]
-)
-def test_margins_are_kept_besides_the_clearance(key: str, margin: float) -> None:
-    """By coal's distances; a cylinder with a margin has up to 1.41 times as much at its rims."""
-    scene = shipped("wok", 200)
-    setup = scene.setup.varied(margins={key: margin})
-    prepared = prepare(scene.with_setup(setup))
-    world = World(prepared.robot, prepared.surface.vertices, prepared.surface.faces)
-    joints = np.random.default_rng(6).uniform(-np.pi, np.pi, (2000, 6))
-    joints = joints[FreeSpace(prepare(scene), CLEARANCE).clear(joints)]
-    clear = FreeSpace(prepared, CLEARANCE).clear(joints)
-    gaps = []
-    for q in joints:
-        world.place(q)
-        gaps.append(
-            {
-                "to_object_m": world.to_object,
-                "between_links_m": lambda: world.to_itself(PAIRS),
-                "to_ground_m": lambda: world.to_ground(
-                    prepared.scene.ground.height_m, setup.robot.may_touch_ground
-                ),
-            }[key]()
-        )
-    gap = np.array(gaps)
-    least = margin + CLEARANCE
-    assert not clear[gap < least - CLOSE].any()
-    assert clear[gap > 1.45 * least + CLOSE].all()
-    assert clear.any() and not clear.all()
 
 
 @pytest.mark.parametrize(("scene", "clearance"), [("irb120_half_pipe", 0.02), ("kr6_wok", 0.05)])

@@ -7,15 +7,12 @@ import re
 import numpy as np
 import pinocchio as pin
 import pytest
-from shipped import ROBOTS, shipped
+from shipped import shipped
 
 import cellcolor
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.contact.engine import always_touching, pairs_of
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.frontend.scene import Scene
-from cellcolor.motion.free_space import FreeSpace
 from cellcolor.motion.limits import home_of, motion_of
 
 HEIGHT = 0.44  # m; of a ground that the arm at home reaches into
@@ -86,15 +83,3 @@ def test_it_is_refused_before_colors_are_computed() -> None:
     with pytest.raises(InputError, match=r"motion\.home_rad"):
         cellcolor.plan(scene, progress=stages.append)
     assert stages == ["preparation"]
-
-
-def test_links_that_are_never_apart_by_the_clearance_do_not_block_the_arm() -> None:
-    """An IRB 120 has its tool within a centimeter of the link behind the flange, however it is."""
-    prepared = prepare(Scene.read(ROBOTS.parents[1] / "instances/arms/irb120_half_pipe.toml"))
-    robot, clearance = prepared.robot, 0.01
-    assert always_touching(robot, pairs_of(robot, clearance)) == (("link_5", "tool_body"),)
-    drawn = np.random.default_rng(1).uniform(robot.lower, robot.upper, (200, robot.joints))
-    clear = FreeSpace(prepared, clearance)(drawn)
-    assert 50 < clear.sum() < 200
-    # What it lets pass touches nothing without a clearance either.
-    assert FreeSpace(prepared, 0.0)(drawn[clear]).all()

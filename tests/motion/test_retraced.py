@@ -9,7 +9,7 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from cellcolor.motion.assembly import retraced, stretches
+from cellcolor.motion.assembly import retraced
 from examples import examples
 
 WAYS = st.sampled_from([(1, 0), (-1, 0), (0, 1), (0, -1)])
@@ -48,13 +48,6 @@ def test_what_is_walked_twice_is_marked(
     marked = np.concatenate(retraced(strokes, SPACING))
     for known, found in zip(expected, marked.tolist(), strict=True):
         assert known is None or known == found
-
-
-def test_stretches_are_runs_of_two_points_or_more() -> None:
-    marked = np.array([True, True, False, True, False, False, True, True, True])
-    assert stretches(marked) == [(0, 1), (6, 8)]
-    assert stretches(np.zeros(3, dtype=bool)) == []
-    assert retraced([np.zeros((2, 3)), np.zeros((1, 3))], SPACING)[0].sum() == 0
 
 
 def test_a_wide_spacing_marks_the_same_ways() -> None:

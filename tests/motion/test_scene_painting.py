@@ -19,7 +19,7 @@ from cellcolor.frontend.arm.kinematics import task_determinants
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.lab.families.voronoi import voronoi
+from cellcolor.lab.families.surfaces import voronoi
 from cellcolor.motion import scene_painting
 from cellcolor.motion.following import Samples, with_normals_of
 from cellcolor.motion.posture import color_costs

@@ -28,22 +28,6 @@ SCENES = {
 }
 
 
-def test_faults_and_valid_plans(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """One of each sort; then a fault that nobody sees, and a verdict that is contradicted."""
-    few = list(oracle.surfaces())[6:9]
-    monkeypatch.setattr(oracle, "surfaces", lambda: iter(few))
-    assert oracle.faults(20) and oracle.valid(24)
-    out = capsys.readouterr().out
-    assert "| all | 20 | 20 |" in out and re.search(r"\| all \| 24 \| .* \| 0 \|", out)
-    monkeypatch.setattr(oracle, "caught", lambda *_: False)
-    monkeypatch.setattr(oracle, "contradictions", lambda *_: ["not as it has to be"])
-    assert not oracle.faults(3) and not oracle.valid(3)
-    out = capsys.readouterr().out
-    assert out.count("not caught: ") == 3 and out.count("not as it has to be") == 3
-
-
 def test_the_readme_has_what_greedy_pays() -> None:
     """And what the other columns are in one row."""
     readme = (ROOT / "README.md").read_text(encoding="utf-8")

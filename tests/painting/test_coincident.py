@@ -18,7 +18,7 @@ from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import CellcolorError
-from cellcolor.lab.families.voronoi import voronoi
+from cellcolor.lab.families.surfaces import voronoi
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import paint
 from examples import examples

@@ -16,7 +16,7 @@ from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.lab.families.meshes import grid_faces
-from cellcolor.lab.families.voronoi import voronoi
+from cellcolor.lab.families.surfaces import voronoi
 from cellcolor.painting.moving import border_length, move_borders
 from cellcolor.painting.paint import Painted, paint
 from examples import examples

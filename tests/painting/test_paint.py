@@ -17,7 +17,7 @@ import cellcolor
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
-from cellcolor.lab.families.voronoi import voronoi
+from cellcolor.lab.families.surfaces import voronoi
 from cellcolor.painting.paint import paint
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options

@@ -9,7 +9,7 @@ from relabelled import isomorphic
 
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.decomposition import decompose
-from cellcolor.lab.families.voronoi import voronoi
+from cellcolor.lab.families.surfaces import voronoi
 from cellcolor.painting.refined import interpolated, unrefined
 from examples import examples
 

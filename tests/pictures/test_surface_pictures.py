@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -163,32 +162,6 @@ class TestSolution:
         for vertex, segment in painted.items():
             subs = solution.cells[cells[vertex]].subcells
             assert segment in {sub.segment for sub in subs}
-
-    def test_a_graph_made_elsewhere_leaves_divided_cells_unpainted(self, tmp_path: Path) -> None:
-        """Where its edges lie on the mesh is not known."""
-        text = (PAPER / "split-cell.surface.json").read_text()
-        (tmp_path / "s.json").write_text(text)
-        surface = LabelledSurface.read(tmp_path / "s.json")
-        made = decompose(surface, "s.json")
-        shifted = replace(
-            made,
-            edges=tuple(replace(edge, id=edge.id + 100) for edge in made.edges),
-            cells=tuple(
-                replace(
-                    cell,
-                    loops=tuple(
-                        tuple(dart + (100 if dart > 0 else -100) for dart in loop)
-                        for loop in cell.loops
-                    ),
-                )
-                for cell in made.cells
-            ),
-        )
-        (tmp_path / "i.json").write_text(shifted.to_json())
-        file, _ = self.solved(tmp_path / "i.json", tmp_path)
-        show(tmp_path / "i.json", file, "-o", tmp_path / "x.html")
-        cut = areas(tmp_path / "x.html")["cut between segments"]
-        assert cut == {v for v, colors in enumerate(surface.vertex_colors) if len(colors) == 2}
 
 
 class TestReasons:

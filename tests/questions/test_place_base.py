@@ -58,8 +58,8 @@ def test_the_world_stays_where_it_is(
         assert at.placed(after.placed(points)) == pytest.approx(before.placed(points), abs=1e-9)
     assert scene.ground is not None and seen.ground is not None
     plane, there = scene.ground.half_space, seen.ground.half_space
-    heights = plane.along(at.placed(points)) - plane.offset_m
-    assert there.along(points) - there.offset_m == pytest.approx(heights, abs=1e-9)
+    heights = plane.heights(at.placed(points))
+    assert there.heights(points) == pytest.approx(heights, abs=1e-9)
 
 
 def test_a_world_and_a_base_that_move_together_change_nothing() -> None:

@@ -216,16 +216,6 @@ def test_stops_are_read_and_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert "robot.fixed_joints.rail_joint: no such joint" in capsys.readouterr().err
 
 
-def test_the_distance_is_that_from_the_arms_base() -> None:
-    scene = long_plate()
-    near = scene.with_setup(scene.setup.varied(robot={"fixed_joints": {"rail_joint": 0.6}}))
-    far = near.moved(position_m=(0.45, 0.6 + 1.8, 0.0))
-    assert cellcolor.build(scene).report.survey.distance_m == pytest.approx(0.35, abs=0.02)
-    assert cellcolor.build(near).report.survey.distance_m == pytest.approx(0.35, abs=0.02)
-    away = cellcolor.build(far).report.survey.distance_m
-    assert away == pytest.approx(np.hypot(0.35, 1.0), abs=0.02)
-
-
 def test_what_cannot_be_set_up_is_refused_in_a_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

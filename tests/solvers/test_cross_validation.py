@@ -62,8 +62,8 @@ LOOPS: dict[str, dict[str, Any]] = {
         "cracks": 2,
     },
 }
-CHUNKS, PER_CHUNK = 4, 10
-"""Every recipe gives CHUNKS tests of PER_CHUNK surfaces: 320 in all, 80 of them by default."""
+CHUNKS, PER_CHUNK = 4, 8
+"""Every recipe gives CHUNKS tests of PER_CHUNK surfaces: 256 in all, 64 of them by default."""
 
 
 def first_is_fast(numbers: range) -> list[Any]:

@@ -18,7 +18,7 @@ from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.errors import TooLarge
 from cellcolor.lab.families import blobs, hub, planar_graph
-from cellcolor.lab.families.hubs import hub_with_loops
+from cellcolor.lab.families.graphs import hub_with_loops
 from cellcolor.solvers.bounds.cover import color_regions, set_cover
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import CompleteModel, complete_model

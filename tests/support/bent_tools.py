@@ -17,22 +17,11 @@ STRAIGHT = ("0 0 0.1", "0 0 0")
 BENT = ("0.06 -0.03 0.12", "0.5 0.7 -0.4")
 ACROSS = ("0.05 0.02 -0.03", "0 1.5707963267948966 0.3")
 
-_TOOL = (
-    '<robot name="tool"><link name="body"/><joint name="tip_joint" type="fixed">'
-    '<parent link="body"/><child link="tool_tip"/><origin xyz="{}" rpy="{}"/></joint>'
-    '<link name="tool_tip"/></robot>'
-)
-
-
-def tool(at: tuple[str, str]) -> str:
-    """URDF of a tool whose tip is at x, y, z and roll, pitch, yaw of the flange."""
-    return _TOOL.format(*at)
-
 
 def robot(arm: str, at: tuple[str, str] = BENT) -> Robot:
     """An arm of ``dh_arms``, or of a URDF, with such a tool, whose turn is given."""
     text = arm if arm.startswith("<") else dh_arms.urdf(arm)
-    parsed = parse_urdf(text, "arm.urdf"), parse_urdf(tool(at), "tool.urdf")
+    parsed = parse_urdf(text, "arm.urdf"), parse_urdf(dh_arms.tool_of(*at), "tool.urdf")
     loaded = load_robot(parsed[0], "flange", parsed[1], "tool_tip", 6)
     return dataclasses.replace(loaded, task=GIVEN_TURN)
 

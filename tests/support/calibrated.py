@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dh_arms
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from cellcolor.arrays import Array
 
@@ -13,16 +14,8 @@ def perturbed(placements: list[Array], angle: float, distance: float, seed: int)
     random, moved = np.random.default_rng(seed), []
     for placement in placements[:-1]:
         turn, way = random.uniform(-1, 1, (2, 3))
-        turn *= angle / np.sqrt(3)
-        half = np.linalg.norm(turn) / 2
-        x, y, z = np.sin(half) * turn / max(2 * half, 1e-30)
-        w = np.cos(half)
         step = np.eye(4)
-        step[:3, :3] = [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
+        step[:3, :3] = Rotation.from_rotvec(angle / np.sqrt(3) * turn).as_matrix()
         step[:3, 3] = distance / np.sqrt(3) * way
         moved.append(placement @ step)
     return [*moved, placements[-1]]

@@ -120,7 +120,7 @@ _LINK = (
 )
 _TOOL = (
     '<robot name="tool"><link name="body"/><joint name="tip_joint" type="fixed">'
-    '<parent link="body"/><child link="tool_tip"/><origin xyz="0 0 {0}"/></joint>'
+    '<parent link="body"/><child link="tool_tip"/><origin xyz="{}" rpy="{}"/></joint>'
     '<link name="tool_tip"/></robot>'
 )
 
@@ -161,9 +161,9 @@ def urdf_of(placements: list[Array], limit: float = 2 * np.pi) -> str:
     return "".join([*text, '<link name="flange"/></robot>'])
 
 
-def tool_of(length: float = 0.1) -> str:
-    """URDF of a tool along the flange's z axis, in m, without collision shapes."""
-    return _TOOL.format(length)
+def tool_of(xyz: str = "0 0 0.1", rpy: str = "0 0 0") -> str:
+    """URDF of a tool without collision shapes, its tip there in the flange's frame, m and rad."""
+    return _TOOL.format(xyz, rpy)
 
 
 def urdf(name: str) -> str:

@@ -48,11 +48,7 @@ def _lifted(share: float, height: float) -> Forger:
         rows = np.arange(first, first + max(20, int(share * (after - first))))
         trajectory, joints = honest.trajectory, honest.trajectory.joints.copy()
         points = trajectory.points[rows] + height * trajectory.normals[rows]
-        found = honest.prepared.arm.inverse(points, -trajectory.normals[rows])
-        turns = np.round((joints[rows, None] - found) / (2 * np.pi)) * 2 * np.pi
-        off = np.abs(found + turns - joints[rows, None]).max(axis=2)
-        best = np.nanargmin(np.where(np.isnan(off), np.inf, off), axis=1)
-        joints[rows] = (found + turns)[np.arange(len(rows)), best]
+        joints[rows] = honest.reached(points, trajectory.normals[rows], joints[rows])
         return honest.posed(joints)
 
     return forge
@@ -300,12 +296,8 @@ def _needless(honest: Honest, random: Random) -> Trajectory:
     heights = np.concatenate([up, down])
     points = trajectory.points[row] + heights[:, None] * trajectory.normals[row]
     normals = np.tile(trajectory.normals[row], (len(points), 1))
-    found = honest.prepared.arm.inverse(points, -normals)
-    own = trajectory.joints[row]
-    turns = np.round((own - found) / (2 * np.pi)) * 2 * np.pi
-    off = np.abs(found + turns - own).max(axis=2)
-    best = np.nanargmin(np.where(np.isnan(off), np.inf, off), axis=1)
-    ways = (found + turns)[np.arange(len(points)), best]
+    own = np.tile(trajectory.joints[row], (len(points), 1))
+    ways = honest.reached(points, normals, own)
     ways = np.where(np.isnan(ways), own, ways)
 
     def put(of: Array, new: Array) -> Array:

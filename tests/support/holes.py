@@ -74,8 +74,8 @@ def live_loops(instance: Instance, cell: Cell) -> Loops:
     return tuple(loop for loop in loops if loop)
 
 
-def divisions_of(instance: Instance, cell: Cell) -> Iterator[Painted]:
-    """Every choice of darts in state 1, colors for them, and sub-cells that can be drawn."""
+def divisions_of(instance: Instance, cell: Cell, crossing: bool) -> Iterator[Painted]:
+    """Every choice of darts in state 1, colors for them, and sub-cells, crossing ones or not."""
     loops = live_loops(instance, cell)
     darts = [dart for loop in loops for dart in loop]
     for colors in itertools.product(*([None, *instance.joinable(dart)] for dart in darts)):
@@ -88,13 +88,13 @@ def divisions_of(instance: Instance, cell: Cell) -> Iterator[Painted]:
         classes = [[d for d in color if color[d] == own] for own in sorted(set(color.values()))]
         for chosen in itertools.product(*map(set_partitions, classes)):
             blocks = [frozenset(block) for partition in chosen for block in partition]
-            if can_be_drawn(loops, frozenset(blocks)):
+            if crossing or can_be_drawn(loops, frozenset(blocks)):
                 yield frozenset((color[min(block)], block) for block in blocks)
 
 
-def divisions(instance: Instance) -> Iterator[tuple[Painted, ...]]:
+def divisions(instance: Instance, crossing: bool = False) -> Iterator[tuple[Painted, ...]]:
     """Every division of every cell, edges in one state and color on both sides."""
-    options = [list(divisions_of(instance, cell)) for cell in instance.cells]
+    options = [list(divisions_of(instance, cell, crossing)) for cell in instance.cells]
 
     def extend(
         chosen: list[Painted], color: dict[int, int | None]

@@ -41,6 +41,14 @@ class Honest:
             self.trajectory, joints=joints, points=poses.tip, normals=-poses.tool_axis, **changes
         )
 
+    def reached(self, points: Array, normals: Array, near: Array) -> Array:
+        """Joints (k, joints) that put the tool on points, those nearest to given ones."""
+        found = self.prepared.arm.inverse(points, -normals)
+        found = found + 2 * np.pi * np.round((near[:, None] - found) / (2 * np.pi))
+        off = np.abs(found - near[:, None]).max(axis=2)
+        best = np.argmin(np.where(np.isnan(off), np.inf, off), axis=1)
+        return np.asarray(found[np.arange(len(found)), best])
+
     def stroke(self, random: Random) -> tuple[int, int]:
         """One of the strokes that are longer than 200 samples."""
         long = [(a, b) for a, b in self.trajectory.strokes if b - a > 200]

@@ -31,7 +31,7 @@ from cellcolor.data.solution import (
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families.meshes import grid_faces, make_mesh
-from cellcolor.lab.families.voronoi import voronoi
+from cellcolor.lab.families.surfaces import voronoi
 from cellcolor.painting.paint import Painted, paint
 from cellcolor.tool_paths.region import Segments
 
@@ -201,16 +201,7 @@ def painted_at_random(seed: int, shape: str) -> Segments:
     painted = paint(surface, decomposition, solution)
     color = {sub.segment: sub.color for cell in division for sub in cell.subcells}
     colors = [color.get(number, -1) for number in range(max(color, default=-1) + 1)]
-    return Segments(painted.surface, painted.segment_of, colors, normals_of(painted.surface))
-
-
-def normals_of(surface: LabelledSurface) -> np.ndarray:
-    """Unit normals at the vertices, the mean of those of the triangles around by area."""
-    corners = surface.vertices[surface.faces]
-    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals = np.zeros_like(surface.vertices)
-    np.add.at(normals, surface.faces, doubled[:, None, :])
-    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    return Segments(painted.surface, painted.segment_of, colors, painted.surface.vertex_normals)
 
 
 def square(size: int = 11, cracks: tuple[tuple[int, int], ...] = ()) -> Segments:

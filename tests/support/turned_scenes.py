@@ -6,6 +6,7 @@ import re
 from functools import cache
 
 import bent_tools
+import dh_arms
 from shipped import ROBOTS
 
 from cellcolor.frontend import Scene, Setup
@@ -42,7 +43,7 @@ def setup(
         robot["arm_urdf"] = arm(*limits)
     if tool:
         at = {"bent": bent_tools.BENT, "across": bent_tools.ACROSS}[tool]
-        robot["tool_urdf"] = bent_tools.tool(at)
+        robot["tool_urdf"] = dh_arms.tool_of(*at)
     return SHIPPED.varied(task={"turn": turn}, robot=robot, slivers=None)
 
 

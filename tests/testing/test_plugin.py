@@ -193,24 +193,6 @@ def joined_in_the_row() -> str:
     return "segments {} and {}".format(*improvement.joined)
 
 
-def test_a_fixture_of_a_module_and_a_picture_named_after_the_test(tmp_path: Path) -> None:
-    """The surface is opened once for the module; the picture is that of the test that fails."""
-    out = run(
-        tmp_path,
-        "import pytest\n"
-        "@pytest.fixture(scope='module')\n"
-        "def row(cellcolor_oracle):\n"
-        "    return cellcolor_oracle('row.surface.json')\n"
-        "def test_good(row):\n"
-        "    row.assert_optimal([0] * 18)\n"
-        "@pytest.mark.parametrize('name', ['a b'])\n"
-        "def test_bad(row, name):\n"
-        "    row.assert_valid([1] * 18)\n",
-    )
-    assert "1 failed, 1 passed" in out
-    assert "pictures/test-planner-py-test-bad-a-b.html" in out
-
-
 def test_the_time_limit_is_an_option(tmp_path: Path) -> None:
     """A range that the limit left open is kept, and proved anew once there is more time."""
     two = drawn("ABCBA ABCBA", {"A": [0], "B": [0, 1], "C": [1]})

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from painted import SHAPES, one_segment, painted_at_random, slit, square
+from painted import SHAPES, one_segment, painted_at_random
 
 from cellcolor.mesh.dividing import small_areas
 from cellcolor.tool_paths.region import Region, regions_of
@@ -16,29 +16,6 @@ from examples import examples
 def euler(region: Region) -> int:
     """Vertices minus edges plus triangles."""
     return region.mesh.euler
-
-
-def test_a_slit_is_a_border_that_parts_nothing() -> None:
-    # From row 2 to row 5 of 9: two ends inside, so it makes a hole without area.
-    painting = square(9, slit(9, 4, range(2, 6)))
-    (region,) = regions_of(painting)
-    assert len(region.mesh.border_loops()) == 2 and euler(region) == 0
-    assert region.mesh.areas.sum() == pytest.approx(1.0)
-    # Every point on it is there twice, but for the two ends.
-    inner = max(region.mesh.border_loops(), key=lambda loop: -len(loop))
-    places = np.round(region.mesh.points[inner], 9)
-    assert len(np.unique(places, axis=0)) == len(inner) // 2 + 1
-
-
-def test_walls_part_a_segment_like_cracks() -> None:
-    painting = square(5)
-    through = [*slit(5, 1, range(4)), (21, 22)]
-    parts = regions_of(painting, walls=through)
-    assert len(parts) == 2
-    assert sum(part.mesh.areas.sum() for part in parts) == pytest.approx(1.0)
-    assert parts[0].mesh.areas.sum() > parts[1].mesh.areas.sum()
-    cracked = regions_of(square(5, tuple(through)))
-    assert [part.small.tolist() for part in cracked] == [part.small.tolist() for part in parts]
 
 
 def test_normals_lie_between_those_of_the_corners() -> None:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import rasters
+from honest_drives import Honest
 from world import KINDS, World, standing
 
 from cellcolor.arrays import Array
@@ -30,13 +31,8 @@ def judged(trajectory: Trajectory, **options: Any) -> TrajectoryVerdict:
 def moved(points: Array, normals: Array, samples: slice) -> Trajectory:
     """The cap's trajectory with other poses at some samples, in the same branch."""
     prepared, _, trajectory = rasters.cap()
-    found = prepared.arm.inverse(points, -normals)
-    off = found - trajectory.joints[samples][:, None]
-    turns = np.round(off / (2 * np.pi)) * 2 * np.pi
-    off, found = np.abs(off - turns).max(axis=2), found - turns
-    nearest = np.nanargmin(off, axis=1)
     joints = trajectory.joints.copy()
-    joints[samples] = found[np.arange(len(found)), nearest]
+    joints[samples] = Honest(prepared, trajectory, 1).reached(points, normals, joints[samples])
     all_points, all_normals = trajectory.points.copy(), trajectory.normals.copy()
     all_points[samples], all_normals[samples] = points, normals
     return replace(trajectory, joints=joints, points=all_points, normals=all_normals)
@@ -55,33 +51,27 @@ def test_a_move_that_was_not_planned() -> None:
     assert [(fault.kind, fault.sample) for fault in verdict.faults] == [("unplanned", after)]
 
 
-def test_off_the_surface() -> None:
-    """Allowed is a millimeter."""
-    _, _, trajectory = rasters.cap()
-    at = slice(middle(), middle() + 1)
-    for height, kinds in ((0.0009, set()), (0.0012, {"off surface"})):
-        points = trajectory.points[at] + height * trajectory.normals[at]
-        verdict = judged(moved(points, trajectory.normals[at], at), timed=False)
-        assert set(verdict.fault_counts) == kinds
-        for fault in verdict.faults:
-            assert fault.sample == middle()
-            assert "1.2 mm" in fault.text
-
-
-def test_tilted() -> None:
-    """Allowed is a degree."""
-    _, _, trajectory = rasters.cap()
-    at = slice(middle(), middle() + 1)
-    normal = trajectory.normals[middle()]
+@pytest.mark.parametrize(
+    ("height", "degrees", "kinds", "said"),
+    [
+        (0.0009, 0.0, set(), ""),
+        (0.0012, 0.0, {"off surface"}, "1.2 mm"),
+        (0.0, 0.8, set(), ""),
+        (0.0, 1.2, {"tilted"}, "1.2 degrees"),
+    ],
+)
+def test_a_millimeter_and_a_degree_are_allowed(
+    height: float, degrees: float, kinds: set[str], said: str
+) -> None:
+    trajectory, at = rasters.cap()[2], slice(middle(), middle() + 1)
+    normal, turn = trajectory.normals[middle()], math.radians(degrees)
     across = np.cross(normal, [1.0, 0.0, 0.0])
-    across /= np.linalg.norm(across)
-    for degrees, kinds in ((0.8, set()), (1.2, {"tilted"})):
-        turn = math.radians(degrees)
-        turned = (math.cos(turn) * normal + math.sin(turn) * across)[None]
-        verdict = judged(moved(trajectory.points[at], turned, at), timed=False)
-        assert set(verdict.fault_counts) == kinds
-        for fault in verdict.faults:
-            assert (fault.sample, fault.last_sample) == (middle(), middle())
+    turned = math.cos(turn) * normal + math.sin(turn) * across / np.linalg.norm(across)
+    points = trajectory.points[at] + height * normal
+    verdict = judged(moved(points, turned[None], at), timed=False)
+    assert set(verdict.fault_counts) == kinds
+    for fault in verdict.faults:
+        assert (fault.sample, fault.last_sample) == (middle(), middle()) and said in fault.text
 
 
 def test_between_distant_samples_too() -> None:

@@ -46,7 +46,6 @@ def mount(
     """The tool's tree fixed to the arm's flange link.
 
     Args:
-        flange: the name of that link.
         position: of the tool's root link in the frame of the flange link, m.
         rpy: its angles there, rad, extrinsic x, y, z.
 

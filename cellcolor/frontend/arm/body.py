@@ -56,6 +56,10 @@ class Shape:
         turned, there = rotation @ self.rotation, rotation @ self.origin + origin
         return replace(self, rotation=turned, origin=there)
 
+    def heights(self, points: Array) -> Array:
+        """How far points (..., 3) are above the plane of a half space, (...,), m."""
+        return np.asarray((points - self.origin) @ self.rotation[:, 2])
+
     @cached_property
     def points(self) -> Array:
         """(k, 3) one of each part that hangs together, in its own frame; none of a half space.
@@ -161,7 +165,6 @@ class StandIn:
     """What collides in the place of a link's mesh.
 
     Attributes:
-        link, file: the link, and the file of its mesh.
         chosen: hull or exact.
         vertices, faces: the mesh, in the frame of the joint that carries it, m.
         body: what collides.

@@ -85,7 +85,6 @@ def find_mesh(
     Args:
         named: what the URDF calls it.
         file, field: the URDF and the element, for errors.
-        folder: of the URDF.
         package_folders: packages, or folders that have some, asked first.
 
     Raises:

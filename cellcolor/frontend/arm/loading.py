@@ -63,9 +63,7 @@ def load_robot(
             frame of the flange link.
         fixed_joints: positions of joints that do not move, rad, or m of prismatic ones.
         shapes: how meshes collide; as hulls without it.
-        may_touch: pairs of links that are not tested against each other.
         force: whether forces are asked for, so that masses and efforts have to be known.
-        prismatic: how many of the joints are prismatic.
 
     Raises:
         InputError: a fault in either URDF (see :mod:`cellcolor.frontend.arm.urdf`), no such tip

@@ -56,7 +56,6 @@ def polished(
         points: (n, 3) where the tip has to be, m.
         directions: (n, 3) unit vectors of the tool.
         farthest: what misses by more at the start is not tried; see :func:`misses`.
-        steps: how many are made at most.
 
     Returns:
         (n, s, joints) in rad, NaN where the tip or the direction misses by more than ``REACHED``.
@@ -156,7 +155,6 @@ class Polished:
     """All solutions of an arm, from candidates that are next to them.
 
     Attributes:
-        robot: the arm as its URDF has it.
         closed_form: points (k, 3) in m and unit vectors (k, 3) to candidates (k, s, joints) in rad,
             NaN where there is none. Given ``branches`` (k,) it may leave out all others.
         farthest: by how much a candidate may miss, m, and for unit vectors.

@@ -84,11 +84,9 @@ class Robot:
         bodies: collision shapes, base first.
         tested_pairs: pairs of bodies (indices) that self-collision looks at: all that do not
             belong to one link or to links next to each other.
-        joint_names: names of the joints.
         warnings: what its files have that is probably not meant, a sentence each.
         model, geometry: Pinocchio's own, for those who want to compute independently; meshes and
             capsules are small spheres there.
-        stand_ins: what collides in the place of meshes.
         tool_links: the links of the tool that have a body.
         task: what it is asked to do with the tool; ``load_robot`` leaves the turn free.
     """

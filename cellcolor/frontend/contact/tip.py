@@ -8,49 +8,19 @@ the tool's pose, whatever the arm does.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from cellcolor.arrays import Array, Mask, numbered
 from cellcolor.frontend.arm.body import Body, Shape
-from cellcolor.frontend.arm.kinematics import Poses, frames_along, turned
+from cellcolor.frontend.arm.kinematics import Poses, turned
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, poses_along
 from cellcolor.frontend.parts.surface import Faces, Surface, along_edges
 from cellcolor.memory import batches
 
 _DEPTH = 0.00065  # m; a tool of 20 mm radius may move by 10 mm, the upper arm by 17
-
-
-@dataclass(frozen=True)
-class HalfSpace:
-    """All points p of the world with ``normal @ p`` below an offset.
-
-    Attributes:
-        normal: (3,) a unit vector, out of the half space.
-        offset_m: of the plane along the normal, from the world's origin, m.
-    """
-
-    normal: tuple[float, float, float]
-    offset_m: float
-
-    @classmethod
-    def through(cls, point: Array, normal: Array) -> HalfSpace:
-        """The half space whose plane passes through a point (3,), with a normal of any length."""
-        x, y, z = (normal / np.linalg.norm(normal)).tolist()
-        return cls((x, y, z), float(np.array([x, y, z]) @ point))
-
-    def along(self, vectors: Array) -> Array:
-        """How far points or vectors (..., 3) go along the normal, (...), m."""
-        return np.asarray(vectors @ np.array(self.normal))
-
-    @property
-    def shape(self) -> Shape:
-        """The half space as a shape that stands still."""
-        normal = np.array(self.normal)
-        turn = frames_along(normal[None])[0]
-        return Shape("half-space", rotation=turn, origin=self.offset_m * normal)
 
 
 def body_ends(robot: Robot, poses: Poses) -> Array:
@@ -122,7 +92,7 @@ class Tip:
     """
 
     def __init__(
-        self, robot: Robot, radius: float, obstacles: Sequence[Shape], ground: HalfSpace | None
+        self, robot: Robot, radius: float, obstacles: Sequence[Shape], ground: Shape | None
     ) -> None:
         """``radius`` in m, and the ground if there is one."""
         point, axis = robot.tip[:3, 3], robot.tip[:3, 2]
@@ -137,7 +107,7 @@ class Tip:
         # Without a length it is a ball, whichever way its frame is turned.
         along = np.array([0.0, 0.0, -length])
         region = replace(self.body, joint=1, start=np.zeros(3), end=along)
-        below: list[Shape] = [] if ground is None else [ground.shape]
+        below: list[Shape] = [] if ground is None else [ground]
         self._with_obstacles, self._with_ground = (
             Contacts([(region, thing, 0.0) for thing in things]) for things in (obstacles, below)
         )

@@ -120,7 +120,6 @@ class NormalCone(Table):
 
     Attributes:
         direction: (3,) of any length but 0.
-        within_rad: the angle.
     """
 
     direction: Vector
@@ -135,11 +134,7 @@ class NormalCone(Table):
 
 
 class Box(Table):
-    """Faces whose three corners are in a box along the axes.
-
-    Attributes:
-        low_m, high_m: its corners.
-    """
+    """Faces whose three corners are in a box along the axes."""
 
     low_m: Position
     high_m: Position

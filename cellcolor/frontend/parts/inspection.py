@@ -63,7 +63,6 @@ class Inspection:
         unused_vertices: those.
         merged_vertices: how many are in one place with an earlier one.
         low_m, high_m: corners of the bounding box.
-        area_m2: of all faces.
         components: from the largest area to the smallest.
         holes: from the longest border to the shortest.
         non_manifold_edges, non_manifold_vertices: places of edges with more than two faces, and of
@@ -181,11 +180,9 @@ def inspect_mesh(
     without area left out, as a repair would do first.
 
     Args:
-        name: of the file, or what it is.
         vertices: (n, 3) in its unit.
         faces: (m, 3).
         unit: ``m``, ``mm``, ``cm`` or ``in``; None takes the likely one, meters where that is open.
-        tell: told what is being looked at.
 
     Raises:
         InputError: it cannot be looked through: coordinates that are not finite, a face of no

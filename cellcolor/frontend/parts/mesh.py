@@ -46,7 +46,6 @@ def mesh_surface(
     Args:
         vertices: (n, 3) coordinates.
         faces: (m, 3) vertex indices, counter-clockwise as seen from outside.
-        meters_per_unit: of the coordinates.
         max_edge_m: longer edges are halved; normals come from the faces of the finer mesh.
         mend: merge vertices in one place, drop useless faces and vertices, make the winding
             consistent. A closed mesh is turned outside out. For an open one the side that most

@@ -64,7 +64,6 @@ def load_mesh(
     STL has no shared vertices, so there the corners with equal coordinates are one vertex.
 
     Args:
-        meters_per_unit: of the file's coordinates.
         max_edge_m, mend: see :func:`~cellcolor.frontend.parts.mesh.mesh_surface`.
         deadline: when to give up; not looked at while another library reads the file.
         flip: turn the faces over; of an open mesh the other side is then the outside.

@@ -44,7 +44,6 @@ class RepairedPart:
     Attributes:
         vertices: (n, 3) in the unit of the mesh that was repaired.
         faces: (m, 3).
-        meters_per_unit: of the vertices.
         changes: what was changed, in its order, with the area that it took or gave.
         holes: how many borders are left.
         area_before_m2, area_m2: of all faces.
@@ -110,7 +109,6 @@ def repair_mesh(
     Args:
         vertices: (n, 3) in any unit.
         faces: (m, 3).
-        meters_per_unit: of the vertices.
         fill_holes_m: holes with a border up to that length are filled.
         least_share: components with less than this share of the largest one's area are dropped.
         edge_length_m: wanted of all edges; None leaves them.

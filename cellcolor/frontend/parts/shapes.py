@@ -73,7 +73,6 @@ def disc_mesh(target: int, jitter: float, seed: int) -> tuple[Array, Faces]:
         target: wanted number of vertices; the nearest possible one is 1 + 3 k (k + 1).
         jitter: vertices are moved by at most this part of a ring's width, along the rim and
             (except on the rim) across it, so that borders do not run along mesh lines.
-        seed: of the jitter.
 
     Returns:
         points (n, 2) and faces (m, 3), counter-clockwise.
@@ -116,7 +115,6 @@ def grid_mesh(
         target: wanted number of vertices; rows and columns are chosen near it.
         jitter: vertices are moved by at most this part of a mesh, on the border along it only,
             at the corners not at all.
-        seed: of the jitter.
 
     Returns:
         points (n, 2) and faces (m, 3), counter-clockwise.

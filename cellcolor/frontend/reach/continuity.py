@@ -56,7 +56,6 @@ def link(
 
     Args:
         edges: (k, 2) vertex indices.
-        measure: what is a jump.
         limits: lower and upper (joints,) of the joints in rad, or in m, which the motion has to
             keep.
         probe: see :data:`~cellcolor.frontend.reach.smooth.Probe`; called with points in between.

@@ -33,7 +33,6 @@ class LimitColors:
     """The colors of a surface, each of which is inside the joint limits by itself.
 
     Attributes:
-        names: of the colors.
         color: of each the color modulo full circles, as numbered in the coloring.
         cracks: the mesh edges along which a color of both ends is not continuous.
         members: (n,) of each color, which vertices have it.
@@ -59,7 +58,6 @@ def limit_colors(
     """Divide the colors that do not fit into the joint limits as a whole.
 
     Args:
-        coloring: colors modulo full circles.
         configurations: (n, branches, joints) in rad.
         edges: (k, 2) all mesh edges.
     """

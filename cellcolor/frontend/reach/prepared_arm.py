@@ -40,9 +40,6 @@ class PreparedArm:
     """An arm and its task: what can be asked without any part, obstacle or ground.
 
     Attributes:
-        setup: the arm's files, and what it has to do.
-        robot: arm and tool.
-        kinematics: the arm's inverse kinematics.
         conditioning: the thresholds for this arm.
         own: None, or if the branches are sheets over a surface
             (:mod:`cellcolor.frontend.reach.sheets`), the kinematics whose solutions have no names.

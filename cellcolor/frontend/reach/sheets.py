@@ -96,7 +96,6 @@ class SheetKinematics(InverseKinematics):
         """Sheets over vertices.
 
         Args:
-            own: the arm's family, which knows no names.
             poses: points (n, 3) in m and unit vectors (n, 3) of the tool at the vertices.
             joints: (n, sheets, joints) in rad, NaN for none.
             valid: (n, sheets) which of them are followed.
@@ -167,7 +166,6 @@ class Followed(Matching):
     is their name.
 
     Attributes:
-        surface: the part.
         solutions: (n, s) of all vertices.
         tracker: follows them, and says what is a jump.
     """

@@ -46,7 +46,6 @@ class Measure:
     """How motions are measured.
 
     Attributes:
-        policy: the bounds on steps.
         near_singular: steps with a task determinant below this, m^3, are always looked into.
         lever: the way that counts like a turn of the tool by one rad, m.
         periods: (joints,) after which a joint comes back, infinite for a prismatic one.
@@ -154,7 +153,6 @@ def follow_edges(
         branches: (k,) one of each edge.
         configurations: (k, joints) at the first ends and at the second ones, rad.
         determinants: (k,) task determinants at both, m^3.
-        measure: what is a jump.
         probe: see :data:`Probe`; called with points in between.
     """
     lengths, turns = surface.lengths(edges), surface.turns(edges)
@@ -256,7 +254,6 @@ class Tracker:
         """An arm whose tool is on the last axis, and what is asked of its motions.
 
         Args:
-            measure: what is a jump.
             limits: what counts as well conditioned; everything, without.
         """
         self._robot, self.measure, self._limits = robot, measure, limits

@@ -82,12 +82,7 @@ class Judge:
         added: tuple[ValidityTest, ...] = (),
         left_out: frozenset[str] = frozenset(),
     ) -> None:
-        """The tests of a workplace.
-
-        Args:
-            added: tests that the scene has besides.
-            left_out: names of tests that are not made.
-        """
+        """The tests of a workplace."""
         self._workplace = workplace
         # Two tests of one kind, with other keys, are one reason.
         self.reason_names = tuple(dict.fromkeys([*STANDARD_REASONS, *(t.name for t in added)]))

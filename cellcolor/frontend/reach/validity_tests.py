@@ -27,7 +27,7 @@ from cellcolor.frontend.arm.kinematics import (
 )
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, Pair, pairs_of, pairs_with
-from cellcolor.frontend.contact.tip import HalfSpace, Tip, body_ends
+from cellcolor.frontend.contact.tip import Tip, body_ends
 from cellcolor.frontend.reach.prepared_arm import PreparedArm
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.tables import Registry, Table
@@ -46,7 +46,7 @@ class Workplace:
     """
 
     arm: PreparedArm
-    ground: HalfSpace | None
+    ground: Shape | None
     obstacles: tuple[Shape, ...]
     target: Shape
     tip: Tip
@@ -65,7 +65,7 @@ class Workplace:
     def contacts(self) -> dict[str, Contacts]:
         """What may not touch or come too near, by the name of the test that asks."""
         robot, margins, exempt = self.robot, self.setup.margins, self.setup.robot.may_touch_ground
-        ground = [] if self.ground is None else [self.ground.shape]
+        ground = [] if self.ground is None else [self.ground]
         free = [body for body in robot.bodies if body.link not in exempt]
         pairs: dict[str, Sequence[Pair]] = {
             "ground": [(body, it, margins.to_ground_m) for it in ground for body in free],
@@ -81,7 +81,6 @@ class Postures:
     """The arm in k configurations, all of them with a solution.
 
     Attributes:
-        workplace: where it stands.
         configurations: (k, joints) in rad, turned into the limits where possible.
         poses: of all joint frames in the world.
         linear: (k, 3, joints) how the tip moves with the joints, m per rad.

@@ -1,11 +1,16 @@
-"""Abstract planar graphs, no surface behind them."""
+"""Planar graphs without a surface: random ones, and hubs, cells with all colors ringed by petals.
+
+A petal is a cell at the border of a hub with one color or a few. Two petals of one color are joined
+by a corridor through the hub, and corridors may not cross: that makes hubs hard.
+"""
 
 from __future__ import annotations
 
 import random
+from collections.abc import Sequence
 
-from cellcolor.data.cells_and_edges import Cell, Edge
-from cellcolor.data.instance import Instance
+from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
+from cellcolor.data.instance import Instance, KnownResult, KnownResults
 from cellcolor.errors import InputError
 
 
@@ -94,3 +99,158 @@ class _Rotation:
             return (0, None), (0, None)
         one, other = rng.choice(sorted(pairs))
         return (self._cell[one], one), (self._cell[other], other)
+
+
+def _require(possible: bool, wanted: str) -> None:
+    if not possible:
+        raise InputError(None, None, f"no {wanted}")
+
+
+def hub(seed: int, petals: int, colors: int) -> Instance:
+    """One cell with all colors, ringed by single-colored cells, no two equal neighbors.
+
+    Its minimum is known (:func:`hub_minimum`) and bounds that count colors say nothing about it.
+
+    Raises:
+        InputError: there is no such hub; two colors do not suffice for an odd number of petals.
+    """
+    possible = petals > 1 and colors > (2 if petals % 2 else 1)
+    _require(possible, f"hub has {petals} petals in {colors} colors")
+    rng = random.Random(f"hub {seed} {petals} {colors}")
+    ring = _ring(rng, petals, colors)
+    known = KnownResults(paper=KnownResult(hub_minimum(ring)))
+    return _hub(f"hub_{seed}_{petals}", [[(color,) for color in ring]], colors, known)
+
+
+def hub_with_loops(seed: int, loops: int, petals: int, colors: int) -> Instance:
+    """A hub with a ring of so many petals round each of its several loops.
+
+    Raises:
+        InputError: there is no such hub.
+    """
+    possible = loops > 0 and petals > 1 and colors > (2 if petals % 2 else 1)
+    _require(possible, f"hub has {loops} loops of {petals} petals in {colors} colors")
+    rng = random.Random(f"hub with loops {seed} {loops} {petals} {colors}")
+    rings = [[(color,) for color in _ring(rng, petals, colors)] for _ in range(loops)]
+    return _hub(f"hub_{seed}_{loops}x{petals}", rings, colors)
+
+
+def _ring(rng: random.Random, petals: int, colors: int) -> list[int]:
+    """Random colors of a ring of petals, no two successive ones equal."""
+    while True:
+        ring = [rng.randrange(colors)]
+        while len(ring) < petals:
+            ring.append(rng.choice([color for color in range(colors) if color != ring[-1]]))
+        if ring[0] != ring[-1]:
+            return ring
+
+
+def _hub(
+    name: str,
+    rings: Sequence[Sequence[tuple[int, ...]]],
+    colors: int,
+    known: KnownResults | None = None,
+) -> Instance:
+    """A cell with all colors and a ring of petals, given by their colors, round each loop."""
+    loops: list[tuple[int, ...]] = []
+    petals: list[Cell] = []
+    edges: list[Edge] = []
+    for ring in rings:
+        n, first = len(ring), len(petals) + 1
+        start = len(edges)
+        loops.append(tuple(range(start + 1, start + n + 1)))
+        edges += [Edge(start + i + 1, 0, first + i) for i in range(n)]
+        edges += [Edge(start + n + i + 1, first + i, first + (i + 1) % n) for i in range(n)]
+        edges += [Edge(start + 2 * n + i + 1, first + i, OUTSIDE) for i in range(n)]
+        for i, own in enumerate(ring):
+            before, after = start + n + (i - 1) % n + 1, start + n + i + 1
+            loop = (-(start + i + 1), -before, start + 2 * n + i + 1, after)
+            petals.append(Cell(first + i, own, (loop,)))
+    return Instance(
+        name,
+        tuple(f"c{color}" for color in range(colors)),
+        (Cell(0, tuple(range(colors)), tuple(loops)), *petals),
+        tuple(edges),
+        known=known,
+    )
+
+
+def hub_minimum(petal_colors: Sequence[int]) -> int:
+    """The minimum of a hub: its petals less the most that corridors through the hub can join.
+
+    The corridors join petals of one color without crossing. A petal is the first of its interval
+    and stays alone, or is joined to a later one, which leaves what lies between and beyond.
+    """
+    size = len(petal_colors)
+    joined = [[0] * (size + 1) for _ in range(size + 1)]  # of the petals before the second index
+    for first in reversed(range(size)):
+        own = joined[first] = joined[first + 1][:]
+        for k in range(first + 1, size):
+            if petal_colors[k] == petal_colors[first]:
+                between = joined[first + 1][k] + 1
+                for end in range(k + 1, size + 1):
+                    own[end] = max(own[end], between + joined[k][end])
+    return size - joined[0][size]
+
+
+def hub_grid(seed: int, rows: int, columns: int, colors: int, side: int = 2) -> Instance:
+    """Hubs in a grid that share the petals between them.
+
+    A hub is a square cell with all colors and ``side`` single-colored petals on each of its four
+    sides. A petal between two hubs has a live edge to both, one at the rim of the grid to one; no
+    two successive petals of a side are equal. What lies between four hubs is unreachable.
+
+    Raises:
+        InputError: there is no such grid.
+    """
+    possible = rows > 0 and columns > 0 and colors > 1 and side > 0
+    _require(possible, f"grid has {rows} x {columns} hubs, {side} petals a side, {colors} colors")
+    rng = random.Random(f"hub grid {seed} {rows} {columns} {colors} {side}")
+    sets: list[tuple[int, ...]] = [tuple(range(colors))] * (rows * columns)
+    loops: list[tuple[int, ...]] = [()] * (rows * columns)
+    edges: list[Edge] = []
+
+    def border(left: int, right: int) -> int:
+        edges.append(Edge(len(edges) + 1, left, right))
+        return len(edges)
+
+    def strip(near: int, far: int) -> tuple[list[int], list[int]]:
+        """Petals between two hubs, or a hub and the rim, as walks round each of the two meet them.
+
+        Looking from the near one to the far one they follow each other from right to left.
+        """
+        nears: list[int] = []
+        fars: list[int] = []
+        behind = None
+        for number in range(side):
+            petal = len(sets)
+            last = sets[-1] if number else ()
+            sets.append((rng.choice([color for color in range(colors) if color not in last]),))
+            right = border(petal, OUTSIDE) if behind is None else -behind
+            nears.append(border(near, petal))
+            fars.insert(0, -border(petal, far))
+            behind = border(petal, petal + 1 if number < side - 1 else OUTSIDE)
+            loops.append((right, -fars[0], behind, -nears[-1]))
+        return nears, fars
+
+    # Row by row from the bottom, so that the strips below and to the left of a hub are known.
+    above: dict[tuple[int, int], list[int]] = {}
+    beside: dict[tuple[int, int], list[int]] = {}
+    for row in range(rows):
+        for column in range(columns):
+            hub_id = row * columns + column
+            bottom = above[row - 1, column] if row else strip(OUTSIDE, hub_id)[1]
+            left = beside[row, column - 1] if column else strip(OUTSIDE, hub_id)[1]
+            right_hub = hub_id + 1 if column < columns - 1 else OUTSIDE
+            right, beside[row, column] = strip(hub_id, right_hub)
+            top, above[row, column] = strip(hub_id, hub_id + columns if row < rows - 1 else OUTSIDE)
+            loop: list[int] = []
+            for darts in (bottom, right, top, left):
+                loop += [*darts, border(hub_id, OUTSIDE)]
+            loops[hub_id] = tuple(loop)
+    return Instance(
+        f"hub_grid_{seed}_{rows}x{columns}x{side}",
+        tuple(f"c{color}" for color in range(colors)),
+        tuple(Cell(i, own, (loop,)) for i, (own, loop) in enumerate(zip(sets, loops, strict=True))),
+        tuple(edges),
+    )

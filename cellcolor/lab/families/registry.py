@@ -1,7 +1,4 @@
-"""Every random family by name, and who draws from it.
-
-Each is a function of a seed.
-"""
+"""Every random family by name; each is a function of a seed."""
 
 from __future__ import annotations
 
@@ -15,18 +12,13 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
-from cellcolor.lab.families.blobs import blobs
-from cellcolor.lab.families.graphs import planar_graph
-from cellcolor.lab.families.hubs import hub, hub_grid, hub_with_loops
+from cellcolor.lab.families.graphs import hub, hub_grid, hub_with_loops, planar_graph
 from cellcolor.lab.families.meshes import SHAPES, Topology
-from cellcolor.lab.families.voronoi import voronoi
+from cellcolor.lab.families.surfaces import blobs, voronoi
 
 MOST_SMALL_CELLS = 10
-MOST_CELL_DARTS = 9
-"""Live darts of a cell."""
-
-MOST_CELL_DARTS_WITH_LOOPS = 5
-"""The same where cells have several live loops: seams between them multiply the darts."""
+MOST_CELL_DARTS, MOST_CELL_DARTS_WITH_LOOPS = 9, 5
+"""Live darts of a cell, the second where one has several live loops: seams multiply the darts."""
 
 _Made = Instance | LabelledSurface
 _Recipe = Callable[[random.Random], _Made]
@@ -50,14 +42,12 @@ def _bearable(recipe: _Recipe, seed: int, *, several_loops: bool | None = False)
             return made
 
 
-def small_hub(seed: int) -> Instance:
-    """One hub, as large as it is made."""
+def _small_hub(seed: int) -> Instance:
     rng = random.Random(f"small {seed}")
     return hub(seed, rng.randint(3, MOST_CELL_DARTS), rng.randint(3, 4))
 
 
-def small_hub_grid(seed: int) -> Instance:
-    """Up to four hubs, as large as they are made."""
+def _small_hub_grid(seed: int) -> Instance:
     rng = random.Random(f"small {seed}")
     rows, columns, side = rng.choice([(1, 1, 2), (1, 2, 1), (1, 3, 1), (2, 2, 1)])
     return hub_grid(seed, rows, columns, rng.randint(2, 4), side)
@@ -65,10 +55,8 @@ def small_hub_grid(seed: int) -> Instance:
 
 def _graph(rng: random.Random, self_edges: bool) -> Instance:
     cells = rng.randint(3, 7)
-    edges = cells + rng.randint(-1, 5)
-    return planar_graph(
-        rng.randrange(2**31), cells, edges, rng.randint(2, 4), self_edges=self_edges
-    )
+    edges, seed = cells + rng.randint(-1, 5), rng.randrange(2**31)
+    return planar_graph(seed, cells, edges, rng.randint(2, 4), self_edges=self_edges)
 
 
 def _surface(
@@ -101,8 +89,7 @@ def _loops(rng: random.Random) -> LabelledSurface:
     return _surface(rng, (7, 9), (2, 3), coverage=(0.8, 1.0), rim=rng.randint(0, 4), **extras)
 
 
-def large_voronoi(topology: Topology, seed: int) -> LabelledSurface:
-    """Voronoi regions on a surface of that topology."""
+def _large_voronoi(topology: Topology, seed: int) -> LabelledSurface:
     rng = random.Random(f"{topology} {seed}")
     size = rng.randint(12, 64)
     low = rng.uniform(0.05, 0.6)
@@ -120,27 +107,23 @@ def large_voronoi(topology: Topology, seed: int) -> LabelledSurface:
     )
 
 
-def large_hub_with_loops(seed: int) -> Instance:
-    """A hub with a ring of petals round each of up to a dozen loops."""
+def _large_hub_with_loops(seed: int) -> Instance:
     rng = random.Random(f"loops {seed}")
     return hub_with_loops(seed, rng.randint(2, 12), rng.randint(2, 10), rng.randint(3, 8))
 
 
-def large_hub(seed: int) -> Instance:
-    """A hub of up to 400 petals."""
+def _large_hub(seed: int) -> Instance:
     rng = random.Random(f"petals {seed}")
-    petals = rng.randint(50, 400)
-    return hub(seed, petals, rng.randint(3, 100))
+    return hub(seed, rng.randint(50, 400), rng.randint(3, 100))
 
 
-def large_hub_grid(seed: int) -> Instance:
-    """Up to 144 hubs that share their petals."""
+def _large_hub_grid(seed: int) -> Instance:
     rng = random.Random(f"grids {seed}")
     rows, columns = rng.randint(2, 12), rng.randint(2, 12)
     return hub_grid(seed, rows, columns, rng.randint(3, 8), rng.randint(1, 4))
 
 
-def large_patches(seed: int) -> LabelledSurface:
+def _large_patches(seed: int) -> LabelledSurface:
     """Blobs with whatever makes them hard: cracks, rims, islands, holes."""
     rng = random.Random(f"patches {seed}")
     return blobs(
@@ -161,23 +144,18 @@ _GRIDS = ((2, 3), (3, 2), (3, 3), (4, 2), (5, 2), (4, 3), (6, 2), (5, 3), (8, 2)
 """Rows, as many as columns, and petals at each side of a hub: from 40 to 540 cells."""
 
 
-def growing_blobs(seed: int) -> LabelledSurface:
+def _growing_blobs(seed: int) -> LabelledSurface:
     """Blobs of 2 to 10 colors with more and more waves: 3 cells at seed 0, 1120 at seed 39."""
     size = min(24 + 2 * seed, 110)
     return blobs(seed, size, 2 + min(seed // 4, 8), waves=0.4 + 0.1 * seed)
 
 
-def growing_hub(seed: int) -> Instance:
+def _growing_hub(seed: int) -> Instance:
     """A hub of 6 petals for seeds 0 to 2, of 9 petals for the next three, …"""
     return hub(seed, 6 + 3 * (seed // 3), 4)
 
 
-def growing_hub_grid(seed: int) -> Instance:
-    """A grid of hubs of 40 to 540 cells.
-
-    Raises:
-        InputError: there are no more sizes.
-    """
+def _growing_hub_grid(seed: int) -> Instance:
     if seed >= len(_GRIDS):
         raise InputError(None, None, f"grids of hubs have seeds 0 to {len(_GRIDS) - 1}")
     rows, side = _GRIDS[seed]
@@ -192,8 +170,8 @@ SMALL: dict[str, Family] = {
     "graphs with self-edges": partial(
         _bearable, partial(_graph, self_edges=True), several_loops=None
     ),
-    "hubs": small_hub,
-    "grids of hubs": small_hub_grid,
+    "hubs": _small_hub,
+    "grids of hubs": _small_hub_grid,
     "smooth blobs": partial(_bearable, _smooth),
     "thin blobs": partial(_bearable, _thin),
     "rim": partial(_bearable, _rim),
@@ -215,17 +193,17 @@ MEDIUM: dict[str, Family] = {
 """As hard as real scenes."""
 
 LARGE: dict[str, Family] = {
-    **{topology: partial(large_voronoi, topology) for topology in SHAPES},
-    "loops": large_hub_with_loops,
-    "petals": large_hub,
-    "grids": large_hub_grid,
-    "patches": large_patches,
+    **{topology: partial(_large_voronoi, topology) for topology in SHAPES},
+    "loops": _large_hub_with_loops,
+    "petals": _large_hub,
+    "grids": _large_hub_grid,
+    "patches": _large_patches,
 }
 """At the limits of the solvers and beyond."""
 
 GROWING: dict[str, Family] = {
-    "blobs": growing_blobs,
-    "hubs": growing_hub,
-    "grids of hubs": growing_hub_grid,
+    "blobs": _growing_blobs,
+    "hubs": _growing_hub,
+    "grids of hubs": _growing_hub_grid,
 }
 """Larger and larger with the seed, to see where solvers reach their limits."""

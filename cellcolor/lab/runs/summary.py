@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from statistics import fmean, median
 
 from cellcolor.data.wording import count
-from cellcolor.lab.runs.row import FINISHED, Row, by, compared, disagreements
+from cellcolor.lab.runs.table import FINISHED, Row, by, compared, disagreements
 from cellcolor.solvers.registry import DEFAULT
 
 _OPEN_SHOWN = 40

@@ -18,7 +18,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.errors import CellcolorError, InputError, RefusedResult, SolverMissing, TooLarge
 from cellcolor.lab.families.registry import GROWING, LARGE, MEDIUM, SMALL, Family
-from cellcolor.lab.runs.row import LATE, Key, Row, Status
+from cellcolor.lab.runs.table import LATE, Key, Row, Status
 from cellcolor.lab.workers import Task, Workers, as_they_end
 from cellcolor.machine import this_machine
 from cellcolor.processes import Ended
@@ -63,10 +63,7 @@ SETS: Mapping[str, Mapping[str, Family]] = {
 
 @dataclass(frozen=True, slots=True)
 class Specimen:
-    """An instance that is made when its turn comes; making it may raise a CellcolorError.
-
-    ``seed`` is None for a file, and ``name`` is for messages.
-    """
+    """An instance that is made when its turn comes; ``seed`` is None for a file."""
 
     family: str
     seed: int | None
@@ -88,10 +85,8 @@ def families_like(pattern: str) -> list[str]:
 def of_family(name: str, seeds: Iterable[int]) -> list[Specimen]:
     """Instances of a family, such as ``medium/thin``."""
     group, _, family = name.partition("/")
-    recipe = SETS[group][family]
-    return [
-        Specimen(name, seed, f"{name}, seed {seed}", partial(_made, recipe, seed)) for seed in seeds
-    ]
+    make = partial(_made, SETS[group][family])
+    return [Specimen(name, seed, f"{name}, seed {seed}", partial(make, seed)) for seed in seeds]
 
 
 def taking_turns(groups: Sequence[Sequence[Specimen]]) -> Iterator[Specimen]:
@@ -105,18 +100,16 @@ def _made(family: Family, seed: int) -> Instance:
     return made if isinstance(made, Instance) else decompose(made)
 
 
-_START_UP = 20.0
-"""Seconds for the start of a process and its imports, on a busy machine."""
-
-_CHECKING = 10.0
-"""Seconds for the checker, and for solvers that hear of the end of their time late."""
+_START_UP, _CHECKING = 20.0, 10.0
+"""Seconds for the start of a process and its imports on a busy machine; for the checker, and for
+solvers that hear of the end of their time late."""
 
 _WARM_UP = Instance("warm-up", ("any",), (Cell(0, (0,), ()),), ())
 
 
 @dataclass(frozen=True, slots=True)
 class Answered:
-    """What a solver answered; see :class:`~cellcolor.lab.runs.row.Row`."""
+    """What a solver answered; see :class:`~cellcolor.lab.runs.table.Row`."""
 
     status: Status
     segments: int | None = None
@@ -149,10 +142,6 @@ def answer(instance: Instance, solver: str, options: Options, limit: float) -> A
         solution.proved_for_surface,
         round(solution.seconds, 4),
     )
-
-
-_STATUS: dict[str, Status] = {"timeout": "timeout", "memory": "memory"}
-"""Ends of runs that did not come back; all others have crashed."""
 
 
 @dataclass
@@ -238,7 +227,8 @@ class Sweep:
 def _row(known: dict[str, Any], ended: Ended) -> Row:
     answered = ended.value
     if not isinstance(answered, Answered):
-        answered = Answered(_STATUS.get(ended.end, "crashed"), error=ended.error)
+        killed: dict[str, Status] = {"timeout": "timeout", "memory": "memory"}
+        answered = Answered(killed.get(ended.end, "crashed"), error=ended.error)
     return Row(
         **known,
         **asdict(answered),

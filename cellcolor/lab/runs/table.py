@@ -1,20 +1,175 @@
-"""A table of runs in a CSV file that grows row by row and survives being cut off."""
+"""Runs of solvers on instances as rows of a table, a CSV file that survives being cut off.
+
+No solver may beat what another one has proved.
+"""
 
 from __future__ import annotations
 
 import csv
 import io
 import os
-from collections.abc import Sequence
-from dataclasses import fields
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, fields
 from fcntl import LOCK_EX, LOCK_NB, flock
 from os import PathLike
 from pathlib import Path
+from typing import Literal, TypeVar
 
+from pydantic import ConfigDict
+
+from cellcolor.data.solution import SearchSpace
 from cellcolor.data.value import adapter_of
 from cellcolor.errors import InputError, system_errors
 from cellcolor.files.documents import validate
-from cellcolor.lab.runs.row import Row
+
+_K = TypeVar("_K")
+
+Status = Literal[
+    "optimal",
+    "feasible",
+    "unknown",
+    "timeout",
+    "memory",
+    "crashed",
+    "refused",
+    "unsupported",
+]
+"""How a run ended. The first three are the solver's own words: a proved minimum, a division, none.
+Killed for its time; killed for its memory, or not begun because it would have been too much; broken
+down; refused by the checker, so that solver or checker is wrong; more than the solver is able to
+do."""
+
+LATE = 2.0
+"""Seconds that a solver may take beyond its limit (docs/measured.md, Limits)."""
+
+FINISHED: tuple[Status, ...] = ("optimal", "feasible", "unknown")
+"""Those that came back with an answer."""
+
+Key = tuple[str, str, str, str, int | None, float, int]
+"""What makes a run the same as another one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One run; docs/formats/tables.md says what the columns are.
+
+    Attributes:
+        seed: of the instance within its family, None for a file.
+        workers: that the solver was told to use, None if it chose itself.
+        limit: in seconds.
+        seconds: of solving alone, by the solver's own clock.
+        cpu_seconds: of all processors, of the whole process.
+        process_seconds: from the start of the process to its end.
+        peak_mb: the most memory of the whole process, 2**20 bytes.
+        error: a line, None if nothing went wrong.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    family: str
+    seed: int | None
+    instance: str
+    sha256: str
+    cells: int
+    edges: int
+    colors: int
+    live_darts: int
+    live_loops: int
+    search_space: SearchSpace
+    solver: str
+    solver_version: str
+    workers: int | None
+    limit: float
+    repetition: int
+    status: Status
+    segments: int | None
+    lower_bound: int | None
+    proved_for_surface: bool | None
+    seconds: float | None
+    cpu_seconds: float
+    process_seconds: float
+    peak_mb: float
+    error: str | None
+    cores: int
+    memory_mb: int
+    cpu: str
+    python: str
+    cellcolor: str
+    load: float
+    date: str
+    command: str
+
+    @property
+    def key(self) -> Key:
+        """Runs with one key are the same run; the machine is not in it."""
+        return (
+            self.sha256,
+            self.search_space,
+            self.solver,
+            self.solver_version,
+            self.workers,
+            self.limit,
+            self.repetition,
+        )
+
+    @property
+    def contestant(self) -> str:
+        """The solver with its number of workers, as it is named on the command line."""
+        return self.solver if self.workers is None else f"{self.solver}@{self.workers}"
+
+    @property
+    def subject(self) -> str:
+        """The instance, so that it can be found again."""
+        return self.instance if self.seed is None else f"{self.family}, seed {self.seed}"
+
+    @property
+    def solved(self) -> bool:
+        """Whether the minimum was proved, no later than two seconds after the limit."""
+        in_time = self.seconds is not None and self.seconds <= self.limit + LATE
+        return self.status == "optimal" and in_time
+
+
+def disagreements(rows: Iterable[Row]) -> list[str]:
+    """A line for each instance on which two runs contradict each other, and for each result that
+    the checker refused."""
+    found = []
+    for own in _by_instance(rows):
+        refused = (row for row in own if row.status == "refused")
+        found += [f"{row.subject}: {row.contestant}: {row.error}" for row in refused]
+        divided = [row for row in own if row.segments is not None]
+        proved = [row for row in own if row.lower_bound is not None]
+        if not divided or not proved:
+            continue
+        best = min(divided, key=lambda row: row.segments or 0)
+        most = max(proved, key=lambda row: row.lower_bound or 0)
+        if (best.segments or 0) < (most.lower_bound or 0):
+            found.append(
+                f"{best.subject} ({best.search_space}, {best.sha256[:12]}): {best.contestant} has "
+                f"{best.segments} segments, {most.contestant} a lower bound of {most.lower_bound}"
+            )
+    return found
+
+
+def compared(rows: Iterable[Row]) -> int:
+    """On how many instances two solvers or more, whatever their workers, have proved a minimum."""
+    return sum(
+        len({row.solver for row in own if row.status == "optimal"}) > 1
+        for own in _by_instance(rows)
+    )
+
+
+def by(rows: Iterable[Row], key: Callable[[Row], _K]) -> dict[_K, list[Row]]:
+    """The rows of each kind, kinds in the order in which they come."""
+    found: dict[_K, list[Row]] = defaultdict(list)
+    for row in rows:
+        found[key(row)].append(row)
+    return dict(found)
+
+
+def _by_instance(rows: Iterable[Row]) -> Iterable[list[Row]]:
+    return by(rows, lambda row: (row.sha256, row.search_space)).values()
+
 
 _COLUMNS = [field.name for field in fields(Row)]
 

@@ -106,7 +106,7 @@ def regions_in_use(m: SectorModel) -> None:
 
 def cover(m: SectorModel) -> None:
     """(8) There are as many regions in use as a smallest set cover has, and as many segments."""
-    m.fewest_regions = set_cover(m.regions).bound
+    m.fewest_regions = set_cover(m.regions, m.deadline).bound
     m.model.add(sum(m.used) >= m.fewest_regions)
     m.model.add(sum(m.variables.root.values()) >= m.fewest_regions)
 
@@ -123,13 +123,14 @@ def company(m: SectorModel) -> None:
 def euler(m: SectorModel) -> None:
     """(10) Euler's formula: there are as many segments as borders divide the surface into.
 
-    Where b border lines meet at a face of the sector graph, they add (b - 2) / 2 regions.
+    Where b border lines meet at a face of the sector graph, they add (b - 2) / 2 areas.
     """
     v, sectors = m.variables, m.sectors
     of_part: UnionFind[int] = UnionFind(range(len(sectors.cell)))
     for one, other, _ in sectors.links:
         of_part.union(one, other)
-    parts = {of_part[sector]: m.model.new_bool_var("") for sector in range(len(sectors.cell))}
+    roots = {of_part[sector] for sector in range(len(sectors.cell))}
+    parts = {root: m.model.new_bool_var(f"border[{n}]") for n, root in enumerate(sorted(roots))}
     for (one, _, _), (apart, _) in zip(sectors.links, m.apart, strict=True):
         m.model.add_implication(apart, parts[of_part[one]])
     alone = sum(not own for own in sectors.around)  # each of these has one face that is no walk

@@ -55,7 +55,7 @@ def loaded(family: str, arm: str, sense: int, at: str, rpy: str) -> Robot:
     last = max(n for n in range(1, len(constants) + 1) if n != slides)
     before, after = text.split(f'name="j{last}"')
     text = f'{before}name="j{last}"' + after.replace("0 0 1", f"0 0 {sense}", 1)
-    files = parse_urdf(text, "arm.urdf"), parse_urdf(bent_tools.tool((at, rpy)), "tool.urdf")
+    files = parse_urdf(text, "arm.urdf"), parse_urdf(dh_arms.tool_of(at, rpy), "tool.urdf")
     wanted, prismatic = len(constants), 1 if slides else 0
     return load_robot(files[0], "flange", files[1], "tool_tip", wanted, prismatic=prismatic)
 

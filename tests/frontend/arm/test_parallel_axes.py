@@ -10,7 +10,7 @@ import dh_arms
 import numpy as np
 import pinocchio as pin
 import pytest
-from bent_tools import BENT, tip_frame, tip_frames, tool
+from bent_tools import BENT, tip_frame, tip_frames
 from hypothesis import given
 from hypothesis import strategies as st
 from independent import kinematics_apart, wrapped
@@ -75,7 +75,7 @@ def arm(order: str, seed: int) -> tuple[Robot, InverseKinematics]:
             text = text.replace(f'"j{number}" type="revolute"', f'"j{number}" type="prismatic"')
     slides, turn_given = "P" in order, order in GIVEN
     out = 0.05 if turn_given else random.uniform(0.2, 0.4)
-    fixed = parse_urdf(tool((f"{out} -0.02 0.1", "0 0 0.8")), "tool.urdf")
+    fixed = parse_urdf(dh_arms.tool_of(f"{out} -0.02 0.1", "0 0 0.8"), "tool.urdf")
     whole = parse_urdf(text, "arm.urdf")
     robot = load_robot(whole, "flange", fixed, "tool_tip", len(order), prismatic=int(slides))
     if turn_given:
@@ -280,7 +280,10 @@ def test_axes_that_are_not_parallel_and_links_without_length_are_refused() -> No
         (("0 0 1", "0 0 0"), "no length"),
     ):
         with pytest.raises(InputError, match=said):
-            PlanarTwo(load_robot(whole, "flange", parse_urdf(tool(at), "t"), "tool_tip", 2), FILES)
+            PlanarTwo(
+                load_robot(whole, "flange", parse_urdf(dh_arms.tool_of(*at), "t"), "tool_tip", 2),
+                FILES,
+            )
 
 
 class Nameless(ScaraWithoutTurn):

@@ -14,10 +14,10 @@ from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, pairs_of, pairs_with
-from cellcolor.frontend.contact.tip import HalfSpace
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
 from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.scene import Ground
 
 CONTACT = 0.0005  # m; verdicts may differ nearer to contact than this
 EXEMPT = ("base_link", "shoulder_link")
@@ -38,9 +38,8 @@ def hits(robot: Robot, thing: Shape, joints: Array) -> Mask:
     return Contacts(pairs_with(robot, [thing]), robot)(joints)
 
 
-def hits_ground(robot: Robot, ground: HalfSpace, exempt: tuple[str, ...], joints: Array) -> Mask:
-    thing = ground.shape
-    pairs = [(body, thing, 0.0) for body in robot.bodies if body.link not in exempt]
+def hits_ground(robot: Robot, ground: Shape, exempt: tuple[str, ...], joints: Array) -> Mask:
+    pairs = [(body, ground, 0.0) for body in robot.bodies if body.link not in exempt]
     return Contacts(pairs, robot)(joints)
 
 
@@ -88,7 +87,7 @@ def test_tool_body_is_flat_and_ends_above_the_tip(robot: Robot) -> None:
     assert poses.tool_axis[0, 2] == pytest.approx(-1)
     tip, arm = poses.tip[0, 2], (*EXEMPT, "upper_arm_link")
     for above, hit in ((0.0099, False), (0.0101, True)):
-        ground = HalfSpace((0.0, 0.0, 1.0), tip + above)
+        ground = Ground(height_m=tip + above).half_space
         assert hits_ground(robot, ground, arm, tool_down(0.0))[0] == hit
 
 

@@ -18,8 +18,8 @@ from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, Pair, pairs_of, pairs_with
 from cellcolor.frontend.contact.obstacle import BoxObstacle, CylinderObstacle, SphereObstacle
-from cellcolor.frontend.contact.tip import HalfSpace
 from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
+from cellcolor.frontend.scene import Ground
 from cellcolor.trajectory_checker.validity import touching
 
 pytestmark = pytest.mark.second
@@ -68,7 +68,7 @@ def test_verdicts_agree(meshed: Robot, tmp_path: Path, margin: float, count: int
         check(meshed, pairs_with(meshed, [obstacle.solid()], margin), joints)
     near = np.linalg.norm(forward(meshed, joints).tip - ASIDE, axis=1) < 0.35
     check(meshed, pairs_with(meshed, [BEAD.solid()], margin), joints[near])
-    ground = HalfSpace((0.0, 0.0, 1.0), GROUND).shape
+    ground = Ground(height_m=GROUND).half_space
     free = [body for body in meshed.bodies if body.link not in EXEMPT]
     check(meshed, [(body, ground, margin) for body in free], joints)
     cap = spherical_cap(0.3, 1.2, *disc_mesh(400, 0.2, 3))

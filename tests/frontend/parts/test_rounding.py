@@ -106,14 +106,6 @@ def test_halving_edges_changes_nothing(seed: int, radius: float, longest: float)
     assert rounded(fine, radius).normals == pytest.approx(by_triangles.normals, abs=1e-9)
 
 
-def test_faces_larger_than_the_radius_keep_their_normals() -> None:
-    """To the bit: what was built before there was a radius is built the same on such a mesh."""
-    ball = surface_of(trimesh.creation.icosphere(2))
-    assert (rounded(ball, 0.2).normals == ball.normals).all()
-    assert rounded(ball, 0.0) is ball
-    assert not (rounded(ball, 0.5).normals == ball.normals).all()
-
-
 def test_many_faces_around_a_vertex(monkeypatch: pytest.MonkeyPatch) -> None:
     """Fewer vertices are then rounded together, to the same normals; too many are refused."""
     part = surface_of(trimesh.creation.box((1, 1, 1)).subdivide().subdivide())

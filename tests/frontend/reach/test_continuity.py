@@ -79,12 +79,6 @@ class Plane:
         return link(self.surface, self.edges, self.candidates, measure(policy), None, self.probe)
 
 
-def test_fast_but_smooth_motion_is_linked_after_probing() -> None:
-    plane = Plane(lambda p: 1.9 * p[0])
-    assert farthest(*plane.candidates.configurations[[1, 0], 0]) > 1.1  # more than the bound
-    assert plane.linked().all() and plane.asked > 0
-
-
 def test_missing_configuration_on_the_way_is_seen_near_singularities_only() -> None:
     def gap(p: Array) -> float:
         return np.nan if 0.38 < p[0] < 0.46 else 0.0
@@ -93,18 +87,6 @@ def test_missing_configuration_on_the_way_is_seen_near_singularities_only() -> N
     near = Plane(gap, determinant=0.001)
     across = (near.surface.vertices[near.edges][:, :, 0] < 0.42).sum(axis=1) == 1
     assert (near.linked()[:, 0] == ~across).all()
-
-
-def test_ill_conditioned_point_on_the_way_is_not_linked() -> None:
-    plane = Plane(lambda _: 0.0, determinant=0.001)
-
-    def probe(points: Array, _: Array, branch: Array) -> tuple[Array, Array]:
-        good = (points[:, 0] < 0.38) | (points[:, 0] > 0.46)
-        return plane.joints(points, branch), np.where(good, 0.001, np.nan)
-
-    found = link(plane.surface, plane.edges, plane.candidates, measure(), None, probe)
-    across = (plane.surface.vertices[plane.edges][:, :, 0] < 0.42).sum(axis=1) == 1
-    assert (found[:, 0] == ~across).all()
 
 
 def spiral(p: Array) -> float:

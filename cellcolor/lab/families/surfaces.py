@@ -1,4 +1,4 @@
-"""Surfaces of any genus whose colors reach unions of random Voronoi regions."""
+"""Random labelled surfaces: smooth domains on a grid, and Voronoi regions on any genus."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import heapq
 
 import numpy as np
 
+from cellcolor.arrays import Array
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
-from cellcolor.lab.families.meshes import Topology, crack_paths, make_mesh
+from cellcolor.lab.families.meshes import Topology, crack_paths, grid_faces, make_mesh
 from cellcolor.mesh.triangle_mesh import directed_edges
 
 Regions = list[int]
@@ -31,11 +32,8 @@ def voronoi(
     """Random Voronoi regions on a mesh, each color on some of them.
 
     A region has the vertices that are nearest to one random seed vertex. Distances are measured
-    along mesh edges, each of random length, so that the borders of the regions are ragged.
-
-    A cell with a handle, as a torus has one, may be in no instance. Such cells are cut until none
-    is left: about half of the regions of the cell gain or lose a color. A cell that is a single
-    region is first divided into smaller regions.
+    along mesh edges, each of random length, so that the borders of the regions are ragged. Cells
+    with a handle are cut until none is left.
 
     Args:
         size: about the square root of the number of vertices, six or more.
@@ -43,17 +41,15 @@ def voronoi(
         scattered: colors reach random regions; otherwise each grows from one region to the next.
         coverage: the least and the largest share of the regions that a color reaches.
         cracks: random paths over the mesh that the colors common to both sides do not cross.
-        islands: small discs that only one color reaches.
-        holes: small discs that no color reaches.
+        islands: small discs that only one color reaches; holes are such that none does.
 
     Raises:
         InputError: a size below 6, no regions, more regions than vertices, or no colors.
     """
     vertices, faces = make_mesh(shape, size)
     if not 1 <= regions <= len(vertices) or colors < 1:
-        raise InputError(
-            None, None, f"{len(vertices)} vertices cannot have {regions} regions, {colors} colors"
-        )
+        wanted = f"{regions} regions, {colors} colors"
+        raise InputError(None, None, f"{len(vertices)} vertices cannot have {wanted}")
     rng = np.random.default_rng([seed, size, regions, colors])
     third = directed_edges(faces, len(vertices))  # the third vertex of the triangle left of (a, b)
     neighbors: list[list[int]] = [[] for _ in vertices]
@@ -114,11 +110,7 @@ def _reached(
     coverage: tuple[float, float],
     scattered: bool,
 ) -> list[set[int]]:
-    """The colors of each region: each color is put on a random share of the regions.
-
-    ``coverage`` has the least and the largest share. The regions of a color are drawn one by one
-    from all of them if ``scattered``, else from those beside the regions that it already has.
-    """
+    """The colors of each region: each color is put on a random share of the regions."""
     count = max(region) + 1
     beside: list[set[int]] = [set() for _ in range(count)]
     for vertex, others in enumerate(neighbors):
@@ -143,11 +135,7 @@ def _reached(
 def _cells_with_handles(
     third: dict[tuple[int, int], int], neighbors: list[list[int]], sets: list[set[int]]
 ) -> list[list[int]]:
-    """The vertices of each cell of a closed mesh that has a handle.
-
-    Cracks are left out of account. A cracked cell is part of the cell that would be there without
-    cracks, and a part of a cell without handles has none either.
-    """
+    """The vertices of each cell of a closed mesh that has a handle, cracks left out of account."""
     owner = [-1] * len(neighbors)
     cells: list[list[int]] = []
     for first, colors in enumerate(sets):
@@ -213,3 +201,79 @@ def _cut(
     for number in inside:
         if rng.random() < 0.5:
             sets[number] ^= {color}
+
+
+def blobs(
+    seed: int,
+    size: int = 24,
+    colors: int = 6,
+    *,
+    waves: float = 0.7,
+    coverage: tuple[float, float] = (0.35, 0.65),
+    thin: bool = False,
+    cracks: int = 0,
+    rim: int = 0,
+    islands: int = 0,
+    holes: int = 0,
+) -> LabelledSurface:
+    """Smooth random color domains on a square grid mesh.
+
+    Each color reaches where a random field of a few waves is high (or, ``thin``, near its median:
+    bands instead of blobs). Where domains overlap a point has several colors, where none reaches
+    it has none.
+
+    Args:
+        size: points along each side of the grid, two or more.
+        waves: how many waves of a field fit across the grid, or nearly; more waves, more cells.
+        coverage: the least and the largest share of the grid that a color reaches.
+        thin: narrow bands instead of round blobs.
+        cracks: random paths over the mesh that the colors common to both sides do not cross.
+        rim: discs on the border of the grid that only one color reaches. With a large coverage
+            they make the cell in their middle one that has to be cut.
+        islands: such discs anywhere; holes are discs that no color reaches.
+
+    Raises:
+        InputError: a size below 2 or no colors.
+    """
+    if size < 2 or colors < 1:
+        raise InputError(None, None, f"blobs need a size of 2 or more (is {size}) and a color")
+    rng = np.random.default_rng([seed, size, colors])
+    y, x = np.mgrid[0:size, 0:size]
+    reached = np.zeros((colors, size, size), dtype=bool)
+    for color in range(colors):
+        field = _waves(rng, x / size, y / size, waves)
+        if thin:
+            field = -np.abs(field - np.median(field))
+        reached[color] = field >= np.quantile(field, 1.0 - rng.uniform(*coverage))
+    for number in range(rim + islands + holes):
+        center = rng.uniform(0.2, 0.8, 2) * (size - 1)
+        if number < rim:
+            center[rng.integers(2)] = rng.integers(2) * (size - 1)
+        radius = rng.uniform(0.09, 0.2) * size
+        disc = np.hypot(x - center[0], y - center[1]) <= radius
+        reached[:, disc] = False
+        if number < rim + islands:
+            reached[rng.integers(colors), disc] = True
+    vertex_colors = tuple(
+        tuple(np.flatnonzero(available).tolist()) for available in reached.reshape(colors, -1).T
+    )
+    faces = grid_faces(size, size)
+    vertices = np.stack([x.ravel(), y.ravel(), np.zeros(size * size)], axis=1).astype(np.float64)
+    return LabelledSurface(
+        f"blobs_{seed}",
+        tuple(f"c{color}" for color in range(colors)),
+        vertices,
+        faces,
+        vertex_colors,
+        crack_paths(rng, faces, vertex_colors, cracks, size),
+        {"family": "blobs", "seed": seed},
+    )
+
+
+def _waves(rng: np.random.Generator, x: Array, y: Array, frequency: float) -> Array:
+    """A smooth random field: a dozen plane waves of about the given frequency."""
+    field = np.zeros_like(x)
+    for _ in range(12):
+        kx, ky = rng.normal(0.0, frequency / 2, 2)
+        field += np.cos(2 * np.pi * (kx * x + ky * y) + rng.uniform(0, 2 * np.pi))
+    return field
