@@ -161,15 +161,12 @@ def _divided(
     parts.sort(key=lambda part: -int(part.mask.sum()))
     kept: list[_Part] = []
     for part in parts:
-        own_links = links[part.agrees(links)]
-        if not any(_within(part, wider, own_links) for wider in kept):
+        own = links[part.agrees(links)]
+        # A segment in a part that is all in another part, with its links, is one of that as well.
+        wider = (each for each in kept if not (part.mask & ~each.mask).any())
+        if not any(each.agrees(own).all() for each in wider):
             kept.append(part)
     return joints, kept, winds
-
-
-def _within(part: _Part, wider: _Part, links: Index) -> bool:
-    """Whether a segment in a part, whose links are these, is one in another part as well."""
-    return not (part.mask & ~wider.mask).any() and bool(wider.agrees(links).all())
 
 
 def _choices(

@@ -6,7 +6,7 @@ The numbers are those of that page. ``DEFINING`` groups make the model correct a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ortools.sat.python import cp_model
@@ -106,7 +106,7 @@ def regions_in_use(m: SectorModel) -> None:
 
 def cover(m: SectorModel) -> None:
     """(8) There are as many regions in use as a smallest set cover has, and as many segments."""
-    m.fewest_regions = set_cover(m.regions).bound
+    m.fewest_regions = set_cover(m.regions, m.deadline).bound
     m.model.add(sum(m.used) >= m.fewest_regions)
     m.model.add(sum(m.variables.root.values()) >= m.fewest_regions)
 
@@ -123,13 +123,14 @@ def company(m: SectorModel) -> None:
 def euler(m: SectorModel) -> None:
     """(10) Euler's formula: there are as many segments as borders divide the surface into.
 
-    Where b border lines meet at a face of the sector graph, they add (b - 2) / 2 regions.
+    Where b border lines meet at a face of the sector graph, they add (b - 2) / 2 areas.
     """
     v, sectors = m.variables, m.sectors
     of_part: UnionFind[int] = UnionFind(range(len(sectors.cell)))
     for one, other, _ in sectors.links:
         of_part.union(one, other)
-    parts = {of_part[sector]: m.model.new_bool_var("") for sector in range(len(sectors.cell))}
+    roots = {of_part[sector] for sector in range(len(sectors.cell))}
+    parts = {root: m.model.new_bool_var(f"border[{n}]") for n, root in enumerate(sorted(roots))}
     for (one, _, _), (apart, _) in zip(sectors.links, m.apart, strict=True):
         m.model.add_implication(apart, parts[of_part[one]])
     alone = sum(not own for own in sectors.around)  # each of these has one face that is no walk
@@ -176,20 +177,14 @@ def zeros(m: SectorModel) -> None:
             m.model.add_implication(m.apart[ring[place - 1]][0], ~m.apart[m.link_at[dart]][0])
 
 
-DEFINING: Mapping[str, Callable[[SectorModel], None]] = {
-    "one color": one_color,
-    "parent or root": parent_or_root,
-    "parent of one color": parent_of_one_color,
-    "no circles": no_circles,
-}
+_Group = Callable[["SectorModel"], None]
 
-REDUNDANT: Mapping[str, Callable[[SectorModel], None]] = {
-    "undivided": undivided,
-    "fixed roots": fixed_roots,
-    "regions in use": regions_in_use,
-    "cover": cover,
-    "company": company,
-    "euler": euler,
-    "connections": connections,
-    "zeros": zeros,
-}
+
+def _named(*groups: _Group) -> dict[str, _Group]:
+    return {group.__name__.replace("_", " "): group for group in groups}
+
+
+DEFINING = _named(one_color, parent_or_root, parent_of_one_color, no_circles)
+REDUNDANT = _named(
+    undivided, fixed_roots, regions_in_use, cover, company, euler, connections, zeros
+)

@@ -116,18 +116,18 @@ def widened(
     Raises:
         TooLarge: the seams would need too many strands.
     """
-    enough = []
+    widths: list[int] = []
     for own in instance.live_loops:
         darts = sum(strands[abs(dart)] for loop in own for dart in loop)
-        enough.append(max(0, darts // 2 - (len(own) == 2)))
-    seams = tuple(
-        replace(seam, strands=enough[seam.cell] if most is None else min(enough[seam.cell], most))
-        for seam in seam_places(instance)
-    )
-    if (total := sum(seam.strands for seam in seams)) > MOST_STRANDS:
-        message = f"{total} strands of seams, {MOST_STRANDS} are the most"
+        for _ in own[1:]:
+            enough = max(0, darts // 2 - (len(own) == 2))
+            widths.append(enough if most is None else min(enough, most))
+            darts += 2 * enough  # on both sides of this seam
+    if sum(widths) > MOST_STRANDS:
+        message = f"{sum(widths)} strands of seams, {MOST_STRANDS} are the most"
         raise TooLarge(f"The model was not built: it would need {message}.")
-    return seams
+    places = seam_places(instance)
+    return tuple(replace(seam, strands=w) for seam, w in zip(places, widths, strict=True))
 
 
 def complete_graph(instance: Instance, strands: Mapping[int, int]) -> DartGraph:
