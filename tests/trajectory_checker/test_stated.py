@@ -106,6 +106,7 @@ def test_a_repeated_stretch_may_be_stated() -> None:
     assert rest.last_sample == fault.last_sample
 
 
+@pytest.mark.second
 def test_a_table_says_what_the_trajectory_states(tmp_path: Path) -> None:
     """A stretch twice is valid where it is stated; so it is in the table of the same motion."""
     prepared, again = rasters.cap()[0], driven_twice()
