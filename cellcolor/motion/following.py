@@ -69,12 +69,9 @@ def with_normals_of(samples: Samples, mesh: TriangleMesh, normals: Array) -> Sam
 def even_places(path: ToolPath, corners: Index | None = None) -> Array:
     """Places (k,) of samples all along a path, both ends among them.
 
-    A place is the way from the path's beginning, in shares of what samples may be apart.
-
-    The way between neighbors is at most 1 mm long along the path, and the normal turns by at most
-    1 degree on it. The larger share of the two sets an equal distance for all.
-    Corners of the path are not samples, but those that are asked for: a chord cuts them by less
-    than half a millimeter.
+    A place is the way from the path's beginning, in shares of what samples may be apart, along the
+    path or by the turn of the normal; the larger share counts. Corners of the path are samples only
+    where they are asked for: a chord cuts them by less than half a millimeter.
 
     Args:
         corners: numbers of points of the path.

@@ -40,7 +40,6 @@ class MotionPlan:
         paths: the tool paths that the trajectory follows.
         measures: of each of these paths.
         trajectory: the arm on them.
-        walls: mesh edges that the paths do not cross so that joints stay inside their limits.
         cut_off: the colors of the strokes that no planned moves join to the home position, or
             to most of the other strokes without one.
     """
@@ -48,7 +47,6 @@ class MotionPlan:
     paths: ToolPaths
     measures: tuple[PathMeasures, ...]
     trajectory: Trajectory
-    walls: tuple[tuple[int, int], ...]
     cut_off: tuple[int, ...]
 
 
@@ -94,7 +92,7 @@ def plan_motion(
             strokes_of(ground, segment, int(own_branch[segment]))
             for segment in np.unique(segment_of[segment_of >= 0]).tolist()
         ]
-    covered = [laid for laid, _, _ in found]
+    covered = [laid for laid, _ in found]
     measures = [one for laid in covered for one in laid.measures]
     paths = ToolPaths(
         surface.name,
@@ -106,7 +104,7 @@ def plan_motion(
     )
     if on_paths is not None:
         on_paths(paths, tuple(measures))
-    strokes = [stroke for _, own, _ in found for stroke in own]
+    strokes = [stroke for _, own in found for stroke in own]
     left_out = _left_out(covered)
     if not strokes:
         raise InputError(None, None, _no_stroke(small, left_out, motion.spacing_m))
@@ -126,7 +124,6 @@ def plan_motion(
         paths,
         tuple(measures),
         trajectory,
-        tuple(edge for _, _, walls in found for edge in walls),
         _cut_off(strokes, transfers, color_of, planner.home is not None),
     )
 
