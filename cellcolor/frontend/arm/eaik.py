@@ -25,12 +25,7 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.calibrated import (
-    CALIBRATION,
-    Axes,
-    NearIdeal,
-    idealized,
-)
+from cellcolor.frontend.arm.calibrated import CALIBRATION, Axes, NearIdeal, idealized
 from cellcolor.frontend.arm.inverse import (
     InverseKinematics,
     check_lever,

@@ -22,12 +22,7 @@ from scipy.optimize import minimize_scalar
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.calibrated import (
-    CALIBRATION,
-    Axes,
-    NearIdeal,
-    idealized,
-)
+from cellcolor.frontend.arm.calibrated import CALIBRATION, Axes, NearIdeal, idealized
 from cellcolor.frontend.arm.inverse import (
     MUST_LIE,
     InverseKinematics,
