@@ -17,29 +17,6 @@ from cellcolor.motion.timing import Speeds, _swept, evenly_timed, timed
 from examples import examples
 
 
-@examples(12)
-@given(st.integers(0, 10**6), st.integers(2, 60))
-def test_times_keep_velocities_and_accelerations(seed: int, count: int) -> None:
-    rng = np.random.default_rng(seed)
-    corners = rng.uniform(-0.3, 0.3, size=(4, 3))
-    at = np.linspace(0, 3, count)
-    joints = np.column_stack([np.interp(at, np.arange(4), corners[:, j]) for j in range(3)])
-    points = 0.4 * joints
-    speeds = Speeds(np.array([1.0, 0.5, 2.0]), np.array([8.0, 3.0, 5.0]))
-    times = timed(joints, speeds, points, 0.05)
-    steps = np.diff(times)
-    assert times[0] == 0
-    assert steps.min() > 0
-    velocity = np.diff(joints, axis=0) / steps[:, None]
-    assert (np.abs(velocity) <= speeds.velocities * (1 + 1e-9)).all()
-    assert (np.linalg.norm(np.diff(points, axis=0), axis=1) <= 0.05 * steps * (1 + 1e-9)).all()
-    # From rest to rest: before the first step and after the last one nothing moves.
-    whole = np.concatenate([np.zeros((1, 3)), velocity, np.zeros((1, 3))])
-    between = (np.append(steps, 0.0) + np.insert(steps, 0, 0.0)) / 2
-    change = np.diff(whole, axis=0) / between[:, None]
-    assert (np.abs(change) <= speeds.accelerations * (1 + 1e-9)).all()
-
-
 def test_many_sharp_bends_slow_down_only_what_is_beside_them() -> None:
     """Between them the tool is as fast as was asked for: nothing is stretched as a whole."""
     rng = np.random.default_rng(1)
