@@ -107,7 +107,8 @@ def plan_motion(
     strokes = [stroke for _, own in found for stroke in own]
     left_out = _left_out(covered)
     if not strokes:
-        raise InputError(None, None, _no_stroke(small, left_out, motion.spacing_m))
+        whole = float(surface.mesh.vertex_areas[segment_of >= 0].sum())
+        raise InputError(None, None, _no_stroke(whole, left_out, motion.spacing_m))
     with clock.timed("order of strokes"):
         strokes = ordered(strokes, joint_space(prepared), speeds.velocities, planner.home, deadline)
     with clock.timed("transfers"):
@@ -166,9 +167,9 @@ def _colors(painted: Painted) -> list[int]:
     return colors
 
 
-def _no_stroke(small: SmallTriangles, left_out: Sequence[LeftOut], spacing_m: float) -> str:
-    """Why the arm can follow no path, and what to try."""
-    why, whole = "the arm can follow no path on any segment", small.areas[small.segment >= 0].sum()
+def _no_stroke(whole: float, left_out: Sequence[LeftOut], spacing_m: float) -> str:
+    """Why the arm can follow no path on segments of this area in m^2, and what to try."""
+    why = "the arm can follow no path on any segment"
     areas: defaultdict[str, float] = defaultdict(float)
     for part in left_out:
         areas[part.reason] += part.area_m2

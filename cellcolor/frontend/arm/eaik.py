@@ -101,7 +101,6 @@ class EaikKinematics(InverseKinematics):
         return self._solution.solve(points, directions, branches)
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
-        """How a calibrated arm is solved, and what is missing."""
         if not isinstance(self._solution, NearIdeal):
             return ()
         return self._solution.remarks(self.solve(points, directions))

@@ -290,13 +290,11 @@ class UrKinematics(InverseKinematics):
     def solve(
         self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
     ) -> Array:
-        """See :func:`~cellcolor.frontend.arm.ur.solve_inverse`."""
         if self._near is None:
             return solve_inverse(self.geometry, points, directions, self._locked, branches)
         return self._near.solve(points, directions, branches)
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
-        """How a calibrated arm is solved, and what is missing."""
         return () if self._near is None else self._near.remarks(self.solve(points, directions))
 
 
