@@ -108,6 +108,8 @@ def _shares(path: ToolPath) -> Array:
     return np.asarray(np.maximum(lengths / DISTANCE, fastest / TURN) / _ROOM)
 
 
+_BOW = 0.3  # of the way between two samples, for the tip: where normals turn fast, steps are short
+_BOW_ANGLE = float(np.deg2rad(0.5))  # of the tool's axis
 _ROUNDING = 1e-6  # m
 _OFF = 4e-4  # m, of the tip off the surface; the judge allows a millimeter
 _FAR_TURN, _FAR_SLIDE = float(np.deg2rad(1.0)), 0.001  # rad, m; what no joint passes untested
@@ -161,6 +163,20 @@ def follow(
     torn = np.zeros(len(samples) - 1, dtype=bool)
     torn[both[~motions.smooth]] = True
     return Followed(unwound(found, joint_space(prepared)), verdicts.reasons, torn)
+
+
+def bowed(robot: Robot, joints: Array) -> Mask:
+    """Steps (k - 1,) of samples (k, joints) in whose middle the tool is off its way.
+
+    Between two samples every joint moves evenly. Beside a singularity, where joints turn by much on
+    a millimeter, the tool bows off the way from one sample to the next.
+    """
+    ends, middle = forward(robot, joints), forward(robot, (joints[:-1] + joints[1:]) / 2)
+    off = np.linalg.norm(middle.tip - (ends.tip[:-1] + ends.tip[1:]) / 2, axis=1)
+    too_far = _BOW * np.linalg.norm(np.diff(ends.tip, axis=0), axis=1) + _ROUNDING
+    axis = ends.tool_axis[:-1] + ends.tool_axis[1:]
+    axis /= np.linalg.norm(axis, axis=1, keepdims=True)
+    return np.asarray((off > too_far) | (angles_between(middle.tool_axis, axis) > _BOW_ANGLE))
 
 
 def off_way(robot: Robot, joints: Array, samples: Samples) -> Mask:
