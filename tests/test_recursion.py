@@ -55,7 +55,7 @@ def calling_themselves(text: str) -> set[str]:
             if isinstance(node, ast.Name) and node.id not in own_names:
                 called = "", node.id
             elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
-                own = node.value.id in ("self", "cls", within)
+                own = bool(within) and node.value.id in ("self", "cls", within)
                 called = (within, node.attr) if own else None
             if called in names and isinstance(node.ctx, ast.Load):
                 graph.add_edge((within, name), called)

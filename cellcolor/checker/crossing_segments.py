@@ -149,11 +149,10 @@ class TwoRegions:
         return found
 
     @cached_property
-    def _circles(self) -> tuple[list[set[int]], list[set[int]]]:
+    def _circles(self) -> list[list[set[int]]]:
         """Closed curves of each region; every other one is homologous to a sum of some of them."""
         self._count(1 + 4 * len(self._cell_of) // WORK)
-        first, second = map(self._independent, self._domains)
-        return first, second
+        return [self._independent(domain) for domain in self._domains]
 
     def _independent(self, domain: Domain) -> list[set[int]]:
         """A largest set of fundamental cycles of a domain no sum of which is homologous to zero.

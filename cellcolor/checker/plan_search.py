@@ -21,10 +21,9 @@ from cellcolor.checker.groups import ColorRegion, Groups
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """What two segments cannot touch side by side.
+    """What two segments, in two color regions, cannot touch side by side.
 
     Attributes:
-        regions: the color regions of the two segments.
         cells: the first segment touches one of ``cells[0]`` and one of ``cells[1]``, the second one
             of ``cells[2]`` and one of ``cells[3]``.
     """

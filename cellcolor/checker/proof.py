@@ -39,11 +39,7 @@ class Proof:
         self.tried = 0
 
     def count(self, choices: int = 1) -> None:
-        """Count choices before they are tried.
-
-        Raises:
-            BudgetExceeded: too many have been tried, or the deadline came first.
-        """
+        """Count choices before they are tried; raises ``BudgetExceeded`` if these are too many."""
         self.tried += choices
         if self.tried > self.budget or self.deadline.over:
             raise BudgetExceeded

@@ -26,7 +26,7 @@ class PaintedCell:
     Attributes:
         darts: the cell's live darts, cyclic.
         block_of: the sub-cell of each dart in state 1; the others are in state 0.
-        colors: the color of each sub-cell.
+        colors: of the sub-cells.
     """
 
     darts: Sequence[Strand]

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from cellcolor.checker.certificates import BoundVerdict
 from cellcolor.checker.claimed_numbers import claims
@@ -66,14 +67,6 @@ def say_solution(name: str, verdict: SolutionVerdict) -> None:
     say(f"  status {verdict.status}")
     if verdict.schemes is not None:
         say(f"  {count(verdict.schemes, 'scheme')}")
-    _say_bounds(verdict)
-    if verdict.claimed:
-        claimed = (f"{name} {json.dumps(value)}" for name, value in verdict.claimed.items())
-        say(f"  claimed, not verified: {', '.join(claimed)}")
-
-
-def _say_bounds(verdict: SolutionVerdict) -> None:
-    """What came of verifying each bound, and how many of them rest on the solver."""
     solver = _SOLVERS.get(verdict.solver, verdict.solver)
     for bound in verdict.bounds:
         tried = f"{bound.tried} of {bound.budget} choices tried"
@@ -82,6 +75,9 @@ def _say_bounds(verdict: SolutionVerdict) -> None:
     if verdict.bounds_by_solver:
         bounds = count(len(verdict.bounds), "bound")
         say(f"  {verdict.bounds_by_solver} of {bounds} by {solver}")
+    if verdict.claimed:
+        claimed = (f"{name} {json.dumps(value)}" for name, value in verdict.claimed.items())
+        say(f"  claimed, not verified: {', '.join(claimed)}")
 
 
 def say_trajectory(name: str, verdict: TrajectoryVerdict) -> None:
@@ -107,6 +103,7 @@ def say_trajectory(name: str, verdict: TrajectoryVerdict) -> None:
         say(f"  {line}")
 
 
+_Said = TypeVar("_Said", SolutionVerdict, TrajectoryVerdict, "Verdict")
 _VIOLATIONS = 100  # of a plan that are listed
 
 
@@ -209,11 +206,7 @@ def _check_solution(request: Request, claim: Path) -> Exit:
         claimed=claimed,
         schemes=schemes or None,
     )
-    if request.as_json:
-        print_json(verdict.to_document())
-    else:
-        say_solution(name_of(request.claim), verdict)
-    return Exit.DONE if verdict.valid else Exit.INVALID
+    return _told(request, verdict, verdict.to_document(), say_solution)
 
 
 def _checked(found: BoundVerdict) -> CheckedBound:
@@ -238,14 +231,9 @@ def _check_plan(request: Request, claim: Path) -> Exit:
 
     oracle = KeepingOracle(subject, request.seconds, request.cache)
     found = oracle.judge(claim, deadline=request.deadline)
-    if request.as_json:
-        print_json(_described(request.claim, found).to_document())
-    else:
-        say_plan(name_of(request.claim), found)
-    if not found.valid:
-        return Exit.INVALID
-    if not request.require_optimal or found.optimal:
-        return Exit.DONE
+    code = _told(request, found, _described(request.claim, found).to_document(), say_plan)
+    if code is Exit.INVALID or not request.require_optimal or found.optimal:
+        return code
     return Exit.STOPPED if found.optimal is None else Exit.INVALID
 
 
@@ -285,10 +273,18 @@ def _check_trajectory(request: Request, claim: Path) -> Exit:
         subject = request.opened(request.deadline)
         with stages_of(Path(request.claim), "judging") as report:
             verdict = judge_trajectory(subject, given, request.deadline, report)
+    document = {"file": request.claim} | verdict.to_document()
+    return _told(request, verdict, document, say_trajectory)
+
+
+def _told(
+    request: Request, verdict: _Said, document: dict[str, Any], say_it: Callable[[str, _Said], None]
+) -> Exit:
+    """Print a verdict, as JSON or in lines."""
     if request.as_json:
-        print_json({"file": request.claim} | verdict.to_document())
+        print_json(document)
     else:
-        say_trajectory(name_of(request.claim), verdict)
+        say_it(name_of(request.claim), verdict)
     return Exit.DONE if verdict.valid else Exit.INVALID
 
 

@@ -125,6 +125,7 @@ def solve(files: tuple[Path, ...], every: bool, limit: int | None, **given: Any)
     FILE may be the name of a shipped one, such as wok: a file of that name goes first. That holds
     for the other commands as well; cellcolor.library() lists the names in Python.
     """
+    first = Deadline.after(given["time_limit"])
     space = given["search_space"]
     wrong = {
         "--strands needs --search-space surface": given["strands"] and space == "paper",
@@ -141,7 +142,7 @@ def solve(files: tuple[Path, ...], every: bool, limit: int | None, **given: Any)
     from cellcolor.solvers.interface import STRANDS
 
     given["strands"] = given["strands"] or STRANDS[space]
-    return solve_files(files, schemes=(limit or _SCHEMES) if every else None, **given)
+    return solve_files(files, schemes=(limit or _SCHEMES) if every else None, first=first, **given)
 
 
 @cellcolor.command()
@@ -176,12 +177,13 @@ def check(seconds: float, **given: Any) -> Exit:
     surface, for a trajectory (.json or .csv) it is the scene. One of the two may be -, for standard
     input.
     """
+    deadline = Deadline.after(seconds)
     if given["subject"] == given["claim"] == "-":
         raise click.UsageError("only one of the two can be standard input (-)")
 
     from cellcolor.cli.checking import Request, check_files
 
-    return check_files(Request(seconds=seconds, deadline=Deadline.after(seconds), **given))
+    return check_files(Request(seconds=seconds, deadline=deadline, **given))
 
 
 @cellcolor.command()

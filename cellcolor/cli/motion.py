@@ -92,7 +92,6 @@ def paint(
     except OutOfTime as error:
         message = f"{source}: not painted: the time limit came first; nothing is written"
         raise OutOfTime(message) from error
-    check_painted(output, inputs)
     write([Output.of(plan_path, painted.plan), Output.of(output, painted.surface)], inputs)
     added = len(painted.surface.vertices) - len(subject.surface.vertices)
     refined = f", {count(added, 'vertex', 'vertices')} added" if added else ""

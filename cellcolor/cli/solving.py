@@ -61,6 +61,7 @@ def solve_files(
     tolerance: str | None,
     schemes: int | None,
     time_limit: float | None,
+    first: Deadline | None,
     as_json: bool,
     **search: Any,
 ) -> Exit:
@@ -69,6 +70,7 @@ def solve_files(
     Args:
         schemes: how many optimal schemes are listed at most; None lists none.
         time_limit: seconds for each file.
+        first: when they are over for the first file, for which starting the command counts.
         search: what goes on to the front door's ``solve``.
     """
     targets = _targets(files, output, schemes is not None)
@@ -84,7 +86,7 @@ def solve_files(
 
     with apart_from(output):
         for file, target in zip(files, targets, strict=True):
-            deadline = Deadline.after(time_limit)
+            deadline, first = first or Deadline.after(time_limit), None
             try:
                 result, lines = _solve(file, deadline, tolerance, schemes, search)
                 if target is not None:

@@ -333,16 +333,13 @@ def witness_in_words(instance: Instance, cells: tuple[int, ...]) -> str | None:
     colors = (set(instance.cells[cell].colors) for cell in cells)
     disjoint = all(a.isdisjoint(b) for a, b in combinations(colors, 2))
     if len(cells) == 2:
-        return f"cells {listed(cells)} " + (
-            "share no color" if disjoint else "can share no segment"
-        )
+        apart = "share no color" if disjoint else "can share no segment"
+        return f"cells {listed(cells)} {apart}"
     shared = "share a color" if disjoint else "can be in one segment"
     return f"no two of the cells {listed(cells)} {shared}"
 
 
-def number_segments(
-    blocks: Sequence[Iterable[tuple[int, Sequence[DartName]]]],
-) -> Division:
+def number_segments(blocks: Sequence[Iterable[tuple[int, Sequence[DartName]]]]) -> Division:
     """A division from each cell's (color, darts in state 1) pairs, its segments numbered.
 
     Darts ``+e`` and ``-e`` (of the same strand) join the sub-cells that hold them. Segments are

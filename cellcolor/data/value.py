@@ -16,8 +16,9 @@ from pydantic_core import CoreSchema
 from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import (
     dump_lines,
-    parse_first_object,
-    read_as,
+    is_json,
+    parse_json,
+    read_document,
     read_text,
     take_body,
     validate,
@@ -102,7 +103,9 @@ class Document(Value):
         Raises:
             InputError: the file cannot be read or holds something that the format forbids.
         """
-        return read_as(path, cls.from_document)
+        document = read_document(path)
+        with naming(path):
+            return cls.from_document(document)
 
 
 def read_one_of(path: str | PathLike[str], kinds: Collection[type[Document]]) -> Any:
@@ -114,7 +117,8 @@ def read_one_of(path: str | PathLike[str], kinds: Collection[type[Document]]) ->
     """
     text = read_text(path)
     with naming(path):
-        document = parse_first_object(text)
+        head = text.partition("\n")[0]
+        document = parse_json(head if is_json(head) else text)
         for kind in kinds:
             if document.get("format") == kind.FORMAT:
                 return kind.from_document(document)

@@ -28,7 +28,7 @@ from cellcolor.door.subject import Result, Solvable, open_subject
 from cellcolor.errors import BeatenBound, InputError, TooLarge, naming
 from cellcolor.oracle import BetterPainting, PathVerdict, Proof, ProvenRange, Verdict, prove
 from cellcolor.oracle.improvement import better_painting, improvement_of
-from cellcolor.oracle.proof_cache import ProofCache
+from cellcolor.oracle.ranges import ProofCache
 from cellcolor.painting.paint import paint
 
 SECONDS = 60.0  # of a proof, unless somebody says otherwise

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from math import pi
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -28,9 +28,6 @@ from cellcolor.door.subject import is_scene
 from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import read_document, read_text
 from cellcolor.files.writing import path_of
-
-if TYPE_CHECKING:
-    from cellcolor.frontend import Scene, Setup
 
 _KINDS: tuple[type[Document], ...] = (
     *(LabelledSurface, Instance, Solution, Plan),
@@ -57,10 +54,8 @@ def read(source: str | PathLike[str]) -> Any:
         InputError: the file cannot be read, or contains something that its format forbids.
     """
     path = find_file(source)
-    return _read_toml(path) if is_scene(path) else read_one_of(path, _KINDS)
-
-
-def _read_toml(path: Path) -> Scene | Setup:
+    if not is_scene(path):
+        return read_one_of(path, _KINDS)
     with extras_for(path):
         from cellcolor.frontend import Scene, Setup
     return Setup.read(path) if _SETUP.search(read_text(path)) else Scene.read(path)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from os import PathLike
 from typing import Any, TypeVar
 
@@ -52,12 +52,6 @@ def parse_json(text: str) -> dict[str, Any]:
     return document
 
 
-def parse_first_object(text: str) -> dict[str, Any]:
-    """Parse one JSON object, or of JSON Lines the one in the first line; see :func:`parse_json`."""
-    head = text.partition("\n")[0]
-    return parse_json(head if is_json(head) else text)
-
-
 def is_json(line: str) -> bool:
     """Whether a line is a JSON text of its own."""
     try:
@@ -92,17 +86,6 @@ def read_document(path: str | PathLike[str]) -> dict[str, Any]:
     text = read_text(path)
     with naming(path):
         return parse_json(text)
-
-
-def read_as(path: str | PathLike[str], from_document: Callable[[dict[str, Any]], T]) -> T:
-    """What a function makes of the JSON object in a file; its errors get the file's name.
-
-    Raises:
-        InputError: the file cannot be read, or the function refuses what it holds.
-    """
-    document = read_document(path)
-    with naming(path):
-        return from_document(document)
 
 
 def take_body(

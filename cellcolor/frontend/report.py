@@ -28,7 +28,6 @@ from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.reach.limit_colors import LimitColors
 from cellcolor.frontend.reach.slivers import SliverReport
 from cellcolor.frontend.reach.validity_tests import STANDARD_TESTS
-from cellcolor.frontend.setup import Task
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 if TYPE_CHECKING:
@@ -171,6 +170,9 @@ def report_on(built: BuildResult) -> BuildReport:
     # Codes are in the order of the tests.
     farthest = verdicts.reasons.max(axis=1)[~reached]
     remarks = prepared.arm.kinematics.remarks(surface.vertices, -surface.normals)
+    task = prepared.setup.task
+    key = "contact_radius_m" if task.edge_radius_m is None else "edge_radius_m"
+    rounding = f"rounded over {1e3 * task.rounding_m:g} mm (task.{key})"
     return BuildReport(
         survey=survey_of(prepared),
         vertices=len(areas),
@@ -186,7 +188,7 @@ def report_on(built: BuildResult) -> BuildReport:
         stand_ins=tuple(map(measured, prepared.robot.stand_ins)),
         slivers=built.slivers_report,
         injectivity=None if prepared.arm.named else _INJECTIVE,
-        rounding=_rounding_in_words(prepared.setup.task) if surface.faceted else None,
+        rounding=rounding if surface.faceted else None,
         limits=_limits_in_words(limits) if limits.positions else None,
     )
 
@@ -197,12 +199,6 @@ def _limits_in_words(limits: LimitColors) -> str:
     if limits.winding:
         text += f"; {len(limits.winding)} of them cut, as they wind around"
     return text
-
-
-def _rounding_in_words(task: Task) -> str:
-    """Over what normals are rounded."""
-    key = "contact_radius_m" if task.edge_radius_m is None else "edge_radius_m"
-    return f"rounded over {1e3 * task.rounding_m:g} mm (task.{key})"
 
 
 def _color_reports(

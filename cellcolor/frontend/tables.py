@@ -96,7 +96,8 @@ class Table(BaseModel):
     def __hash__(self) -> int:
         """Pydantic's own does not bear keys that hold tables with names of the user's."""
         values = (getattr(self, name) for name in type(self).model_fields)
-        return hash((type(self), *(_hashable(value) for value in values)))
+        held = (frozenset(v.items()) if isinstance(v, dict) else v for v in values)
+        return hash((type(self), *held))
 
     def varied(self, **changes: Any) -> Self:
         """The same table with some keys changed.
@@ -118,10 +119,6 @@ class Table(BaseModel):
                     raise InputError(None, place, error.message) from error
             content[key] = change
         return type(self)(**content)
-
-
-def _hashable(value: Any) -> Any:
-    return frozenset(value.items()) if isinstance(value, dict) else value
 
 
 class FileTable(Table):

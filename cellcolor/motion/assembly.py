@@ -50,7 +50,8 @@ def retraced(strokes: Sequence[Array], spacing: float) -> list[Mask]:
         thin.append(points[::every])
         begin += float(steps.sum()) + 2 * _APART * spacing  # another stroke is another pass
     way, points = np.concatenate(ways), np.concatenate(thin)
-    steps = np.concatenate([_steps(own) for own in thin])
+    # From the point before to the one after; zero if there is only one.
+    steps = np.concatenate([np.gradient(p, axis=0) if len(p) > 1 else 0 * p for p in thin])
     sizes = np.linalg.norm(steps, axis=1, keepdims=True)
     directions = steps / np.where(sizes > 0, sizes, 1.0)
     near = cKDTree(points).query_pairs(_BESIDE * spacing, output_type="ndarray")
@@ -61,11 +62,6 @@ def retraced(strokes: Sequence[Array], spacing: float) -> list[Mask]:
     marked[passes.ravel()] = True
     parts = np.split(marked, np.cumsum([len(own) for own in thin])[:-1])
     return [np.repeat(part, every)[: len(own)] for part, own in zip(parts, strokes, strict=True)]
-
-
-def _steps(points: Array) -> Array:
-    """From the point before to the one after, (k, 3); zero if there is only one."""
-    return np.gradient(points, axis=0) if len(points) > 1 else np.zeros_like(points)
 
 
 def stretches(marked: Mask) -> list[tuple[int, int]]:

@@ -17,6 +17,7 @@ from cellcolor.motion.following import (
     Followed,
     Samples,
     blocked,
+    bowed,
     even_places,
     follow,
     joint_space,
@@ -104,6 +105,7 @@ def _course(
         joints, reasons, torn = followed.joints, followed.reasons, followed.torn
         valid = reasons == VALID
         bad = np.abs(np.diff(joints, axis=0)).max(axis=1) > _FARTHEST
+        bad |= bowed(prepared.robot, joints)
         for share in _BETWEEN:
             way = joints[:-1] + share * np.diff(joints, axis=0)
             inner = places[:-1] + share * np.diff(places)

@@ -69,12 +69,9 @@ def with_normals_of(samples: Samples, mesh: TriangleMesh, normals: Array) -> Sam
 def even_places(path: ToolPath, corners: Index | None = None) -> Array:
     """Places (k,) of samples all along a path, both ends among them.
 
-    A place is the way from the path's beginning, in shares of what samples may be apart.
-
-    The way between neighbors is at most 1 mm long along the path, and the normal turns by at most
-    1 degree on it. The larger share of the two sets an equal distance for all.
-    Corners of the path are not samples, but those that are asked for: a chord cuts them by less
-    than half a millimeter.
+    A place is the way from the path's beginning, in shares of what samples may be apart, along the
+    path or by the turn of the normal; the larger share counts. Corners of the path are samples only
+    where they are asked for: a chord cuts them by less than half a millimeter.
 
     Args:
         corners: numbers of points of the path.
@@ -111,6 +108,8 @@ def _shares(path: ToolPath) -> Array:
     return np.asarray(np.maximum(lengths / DISTANCE, fastest / TURN) / _ROOM)
 
 
+_BOW = 0.3  # of the way between two samples, for the tip: where normals turn fast, steps are short
+_BOW_ANGLE = float(np.deg2rad(0.5))  # of the tool's axis
 _ROUNDING = 1e-6  # m
 _OFF = 4e-4  # m, of the tip off the surface; the judge allows a millimeter
 _FAR_TURN, _FAR_SLIDE = float(np.deg2rad(1.0)), 0.001  # rad, m; what no joint passes untested
@@ -164,6 +163,20 @@ def follow(
     torn = np.zeros(len(samples) - 1, dtype=bool)
     torn[both[~motions.smooth]] = True
     return Followed(unwound(found, joint_space(prepared)), verdicts.reasons, torn)
+
+
+def bowed(robot: Robot, joints: Array) -> Mask:
+    """Steps (k - 1,) of samples (k, joints) in whose middle the tool is off its way.
+
+    Between two samples every joint moves evenly. Beside a singularity, where joints turn by much on
+    a millimeter, the tool bows off the way from one sample to the next.
+    """
+    ends, middle = forward(robot, joints), forward(robot, (joints[:-1] + joints[1:]) / 2)
+    off = np.linalg.norm(middle.tip - (ends.tip[:-1] + ends.tip[1:]) / 2, axis=1)
+    too_far = _BOW * np.linalg.norm(np.diff(ends.tip, axis=0), axis=1) + _ROUNDING
+    axis = ends.tool_axis[:-1] + ends.tool_axis[1:]
+    axis /= np.linalg.norm(axis, axis=1, keepdims=True)
+    return np.asarray((off > too_far) | (angles_between(middle.tool_axis, axis) > _BOW_ANGLE))
 
 
 def off_way(robot: Robot, joints: Array, samples: Samples) -> Mask:

@@ -23,10 +23,8 @@ def motion_of(prepared: PreparedScene) -> Motion:
     """The table of a setup that a motion needs.
 
     Raises:
-        InputError: there is none, or a list has another number of joints than the arm, the home
-            position is outside the limits, a length is larger than the part or the arm's reach, the
-            tool retracts less than it has to keep clear, a tool that touches is asked for leads, or
-            the arm is planar.
+        InputError: there is none, it does not fit the arm, the part or itself, or the arm is
+            planar; names the key.
     """
     setup, robot = prepared.scene.setup, prepared.robot
     with naming(setup.file):

@@ -40,7 +40,6 @@ class MotionPlan:
         paths: the tool paths that the trajectory follows.
         measures: of each of these paths.
         trajectory: the arm on them.
-        walls: mesh edges that the paths do not cross so that joints stay inside their limits.
         cut_off: the colors of the strokes that no planned moves join to the home position, or
             to most of the other strokes without one.
     """
@@ -48,7 +47,6 @@ class MotionPlan:
     paths: ToolPaths
     measures: tuple[PathMeasures, ...]
     trajectory: Trajectory
-    walls: tuple[tuple[int, int], ...]
     cut_off: tuple[int, ...]
 
 
@@ -94,7 +92,7 @@ def plan_motion(
             strokes_of(ground, segment, int(own_branch[segment]))
             for segment in np.unique(segment_of[segment_of >= 0]).tolist()
         ]
-    covered = [laid for laid, _, _ in found]
+    covered = [laid for laid, _ in found]
     measures = [one for laid in covered for one in laid.measures]
     paths = ToolPaths(
         surface.name,
@@ -106,10 +104,11 @@ def plan_motion(
     )
     if on_paths is not None:
         on_paths(paths, tuple(measures))
-    strokes = [stroke for _, own, _ in found for stroke in own]
+    strokes = [stroke for _, own in found for stroke in own]
     left_out = _left_out(covered)
     if not strokes:
-        raise InputError(None, None, _no_stroke(small, left_out, motion.spacing_m))
+        whole = float(surface.mesh.vertex_areas[segment_of >= 0].sum())
+        raise InputError(None, None, _no_stroke(whole, left_out, motion.spacing_m))
     with clock.timed("order of strokes"):
         strokes = ordered(strokes, joint_space(prepared), speeds.velocities, planner.home, deadline)
     with clock.timed("transfers"):
@@ -126,7 +125,6 @@ def plan_motion(
         paths,
         tuple(measures),
         trajectory,
-        tuple(edge for _, _, walls in found for edge in walls),
         _cut_off(strokes, transfers, color_of, planner.home is not None),
     )
 
@@ -169,9 +167,9 @@ def _colors(painted: Painted) -> list[int]:
     return colors
 
 
-def _no_stroke(small: SmallTriangles, left_out: Sequence[LeftOut], spacing_m: float) -> str:
-    """Why the arm can follow no path, and what to try."""
-    why, whole = "the arm can follow no path on any segment", small.areas[small.segment >= 0].sum()
+def _no_stroke(whole: float, left_out: Sequence[LeftOut], spacing_m: float) -> str:
+    """Why the arm can follow no path on segments of this area in m^2, and what to try."""
+    why = "the arm can follow no path on any segment"
     areas: defaultdict[str, float] = defaultdict(float)
     for part in left_out:
         areas[part.reason] += part.area_m2

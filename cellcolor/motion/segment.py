@@ -43,17 +43,14 @@ class Ground:
     deadline: Deadline
 
 
-def strokes_of(
-    ground: Ground, segment: int, branch: int
-) -> tuple[Covered, list[Stroke], Collection[tuple[int, int]]]:
+def strokes_of(ground: Ground, segment: int, branch: int) -> tuple[Covered, list[Stroke]]:
     """Lay out a segment's paths so that the arm can follow them, and follow them.
 
     They go beyond the segment's border if neighbors are to overlap and one stroke is enough then.
     Walls are put up only where a joint would exceed its limits without them.
 
     Returns:
-        Its tool paths, the strokes on them, each within the limits of the joints, and the walls,
-        mesh edges, that were put up for that.
+        Its tool paths, and the strokes on them, each within the limits of the joints.
     """
     segments, motion, space = ground.segments, ground.motion, joint_space(ground.prepared)
     own = segments.segment_of == segment
@@ -70,12 +67,12 @@ def strokes_of(
         covered, courses = _courses(ground, segment, branch, refusals, overlap=overlap)
         strokes = _on(ground, courses, branch)
         if len(strokes) == 1 and space.fits(strokes[0].joints):
-            return covered, strokes, ()
+            return covered, strokes
     refusals = refused_near(own)
     covered, courses = _courses(ground, segment, branch, refusals)
     strokes = _on(ground, courses, branch)
     if all(space.fits(stroke.joints) for stroke in strokes):
-        return covered, strokes, ()
+        return covered, strokes
     return _between_walls(ground, segment, branch, refusals, len(strokes))
 
 
@@ -107,7 +104,7 @@ def _courses(
 
 def _between_walls(
     ground: Ground, segment: int, branch: int, refusals: ArmRefusals, parted: int
-) -> tuple[Covered, list[Stroke], Collection[tuple[int, int]]]:
+) -> tuple[Covered, list[Stroke]]:
     """As :func:`strokes_of`, with walls between which the joints stay in their limits.
 
     Args:
@@ -128,7 +125,7 @@ def _between_walls(
             parting = Parting("winding", text, strokes[at].points[0])
             strokes[at] = replace(strokes[at], parting=parting)
     cut = [part for stroke in strokes for part in cut_where_full(stroke, space, names)]
-    return covered, _worth_a_lift_off(cut, ground.motion.spacing_m), walls
+    return covered, _worth_a_lift_off(cut, ground.motion.spacing_m)
 
 
 def _on(ground: Ground, courses: list[Course], branch: int) -> list[Stroke]:

@@ -16,7 +16,7 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.mesh.dividing import small_areas, small_triangles, unit_everywhere
+from cellcolor.mesh.dividing import small_triangles, unit_everywhere
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.following import joint_space
 from cellcolor.tool_paths.refused import Codes
@@ -36,7 +36,6 @@ class SmallTriangles:
         corners: (6 m, 3) which points each small triangle has; the mesh's vertex first.
         side: (6 m,) the edge of the mesh that it touches.
         segment: (6 m,) -1 where the vertex has no color.
-        areas: (6 m,) m^2.
     """
 
     whole: TriangleMesh
@@ -45,7 +44,6 @@ class SmallTriangles:
     corners: Index
     side: Index
     segment: Index
-    areas: Array
 
     @classmethod
     def of(cls, whole: TriangleMesh, normals: Array, segment_of: Index) -> SmallTriangles:
@@ -58,7 +56,6 @@ class SmallTriangles:
             fine.corners,
             side,
             segment_of[fine.corners[:, 0]],
-            small_areas(whole),
         )
 
 

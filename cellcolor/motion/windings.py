@@ -86,7 +86,8 @@ def walls_of(steps: Steps, space: JointSpace) -> tuple[list[tuple[int, int]], in
         parts a connected piece of the segment; None if none does.
     """
     one, other = steps.ends.T
-    torn, parting = np.zeros(len(one), dtype=bool), None
+    torn: Mask = np.zeros(len(one), dtype=bool)
+    parting: int | None = None
     for joint in np.flatnonzero(_winding(steps) & np.isfinite(space.lower + space.upper)).tolist():
         turns, before = steps.turns[:, joint], _pieces(steps, torn)
         lower, upper = space.lower[joint] + np.pi, space.upper[joint] - np.pi

@@ -62,11 +62,7 @@ class Verdict:
     @property
     def optimal(self) -> bool | None:
         """True: proved to be. False: proved not to be. None: neither, or the plan is not valid."""
-        if self.segments is None or self.bounds is None:
-            return None
-        if self.segments == self.bounds.lower:
-            return True
-        return False if self.segments > self.bounds.upper else None
+        return None if self.beatable_by is None else self.beatable_by == 0
 
     @property
     def beatable_by(self) -> int | None:
@@ -205,24 +201,14 @@ class PathVerdict(Verdict):
         return max(self.strokes + self.color_changes, self.segments)
 
     @property
-    def optimal(self) -> bool | None:
-        """As for a plan, of :attr:`needed`."""
-        return self._compared.optimal
-
-    @property
     def beatable_by(self) -> int | None:
         """As for a plan: how many segments fewer than :attr:`needed` are proved to be enough."""
-        return self._compared.beatable_by
+        return Verdict(self.problems, self.needed, self.bounds).beatable_by
 
     @property
     def of_colors(self) -> Verdict:
         """The verdict on the plan that the path makes, whatever its strokes."""
-        own = (getattr(self, field.name) for field in fields(Verdict))
-        return Verdict(*own)
-
-    @property
-    def _compared(self) -> Verdict:
-        return Verdict(self.problems, self.needed, self.bounds)
+        return Verdict(*(getattr(self, member.name) for member in fields(Verdict)))
 
     def __str__(self) -> str:
         strokes = count(self.strokes, "stroke")
@@ -246,9 +232,8 @@ class PathVerdict(Verdict):
     def _why_not(self) -> str:
         """What keeps the path from being compared, with the first vertices or samples."""
         shown = "; ".join(self.problems[:_SHOWN])
-        rest = ", …" if len(self.problems) > _SHOWN else ""
+        shown += ", …" if len(self.problems) > _SHOWN else ""
         if not self.untouched:
-            return f"{shown}{rest}"
+            return shown
         vertices = count(self.reachable, "reachable vertex", "reachable vertices")
-        lacking = f"{self.untouched} of {vertices} get no contact in one of their colors"
-        return f"{lacking}: {shown}{rest}"
+        return f"{self.untouched} of {vertices} get no contact in one of their colors: {shown}"

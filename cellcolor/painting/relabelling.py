@@ -162,16 +162,10 @@ class Relabelling:
         for new in sorted(beside, key=lambda number: (change[number], number)):
             if change[new] >= -self._least:
                 return False
-            if self._give(vertex, new):
+            if self.color_of[new] in self._colors[vertex] and self._keeps_segments(vertex, new):
+                segment[vertex] = new
                 return True
         return False
-
-    def _give(self, vertex: int, new: int) -> bool:
-        """Give a vertex to another segment if that is legal; says whether it was."""
-        legal = self.color_of[new] in self._colors[vertex] and self._keeps_segments(vertex, new)
-        if legal:
-            self.segment[vertex] = new
-        return legal
 
     def _keeps_segments(self, vertex: int, new: int) -> bool:
         """Whether no segment falls apart, closes in on itself, or touches one of its color."""

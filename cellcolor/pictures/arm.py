@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
 from cellcolor.arrays import Array, Index
@@ -13,7 +11,6 @@ from cellcolor.frontend import BuildResult
 from cellcolor.frontend.arm.body import Body, Shape
 from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.obstacle import Obstacle
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.pictures.mesh_picture import eye
 from cellcolor.pictures.picture import FAINT, Layer, Picture3D, SpaceLines, Text
@@ -102,7 +99,8 @@ def surroundings(prepared: PreparedScene) -> list[Layer]:
         body = body.placed(scene.placement)
         layers.append(Layer("collision object", BODY, body.vertices, faces))
     if scene.obstacle:
-        meshes = [_obstacle_mesh(each, scene.folder) for each in scene.obstacle]
+        shells = [(each, *each.shell(scene.folder)) for each in scene.obstacle]
+        meshes = [(each.placed(points), triangles) for each, points, triangles in shells]
         layers.append(Layer("obstacles", OBSTACLE, *_joined(meshes)))
     return layers
 
@@ -141,12 +139,6 @@ def _round(body: Body) -> _Mesh:
     turn = align_vectors([0, 0, 1], axis)[:3, :3] if length else np.eye(3)
     middle = (body.start + body.end) / 2
     return made.vertices @ turn.T + middle, made.faces.astype(np.int64)
-
-
-def _obstacle_mesh(obstacle: Obstacle, folder: Path) -> _Mesh:
-    """Points (k, 3) in m and triangles (t, 3) of an obstacle, in the world."""
-    points, triangles = obstacle.shell(folder)
-    return obstacle.placed(points), triangles
 
 
 def grid(ground: Shape, points: Array) -> SpaceLines:

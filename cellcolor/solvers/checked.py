@@ -68,8 +68,7 @@ def solve(
     """Color an instance with the fewest segments; the checker sees it.
 
     Raises:
-        InputError: there is no such solver, or it is not able to do what is asked, or there are
-            too many strands.
+        InputError: there is no such solver, or it is not able to, or there are too many strands.
         TooLarge: the seams of cells with several loops would need too many strands.
         RefusedResult: the checker refuses what the solver found.
     """

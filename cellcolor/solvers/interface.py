@@ -118,8 +118,7 @@ class Solver(Protocol):
     """One way to solve an instance.
 
     One that needs what is not installed raises :class:`~cellcolor.errors.SolverMissing` when it is
-    made. One that calls something with a version of its own may have an attribute ``version``, a
-    text such as ``OR-Tools 9.15``, for tables of results.
+    made. It may have an attribute ``version``, a text such as ``OR-Tools 9.15``, for tables.
     """
 
     @property

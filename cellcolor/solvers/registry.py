@@ -1,9 +1,8 @@
 """Every solver by name: those of this package, and those that other packages register.
 
 A solver is a callable without arguments, usually its class, written as ``module:name``; it is
-imported when somebody asks for the solver and not before. This package's own stand in ``_OWN``.
-Other packages register theirs as entry points of the group ``cellcolor.solvers``
-(docs/how-to/add-a-solver.md).
+imported when somebody asks for the solver and not before. Other packages register theirs as entry
+points (docs/how-to/add-a-solver.md).
 """
 
 from __future__ import annotations
@@ -84,8 +83,7 @@ def make_solver(name: str) -> Solver:
 def solver_version(name: str) -> str:
     """Which version answers: what the solver says of itself, else the version of its package.
 
-    Raises:
-        InputError, SolverMissing: as for :func:`make_solver`.
+    It raises what :func:`make_solver` raises.
     """
     own = getattr(make_solver(name), "version", None)
     if own is not None:

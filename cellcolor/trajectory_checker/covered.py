@@ -99,7 +99,11 @@ def covered_by(
     """
     distance, nearest = reach(fine, contact.at, FAR * spacing)
     right = np.zeros(len(fine.vertices), dtype=bool)
-    found = Reached(fine, spacing, reachable_areas(built, fine), distance, right)
+    # Of each vertex of the fine mesh what is part of a vertex with a color.
+    colored: Mask = np.any(built.node_color >= 0, axis=1)
+    third = np.where(colored[fine.owner], fine.mesh.area_faces, 0.0) / 3
+    areas = np.bincount(fine.triangles.ravel(), np.repeat(third, 3), len(fine.vertices))
+    found = Reached(fine, spacing, areas.astype(np.float64), distance, right)
     beside = np.append(contact.segment, -1)[nearest]
     every = np.arange(len(built.branches))
     regions = [(beside == one, contact.branches[contact.segment == one]) for one in sorted(stated)]
@@ -110,14 +114,6 @@ def covered_by(
         places, normals = fine.vertices[asked], fine.normals[asked]
         right[asked] = _out_of_reach(built.prepared, places, normals, own[own >= 0], deadline)
     return found
-
-
-def reachable_areas(built: BuildResult, fine: FineMesh) -> Array:
-    """How much area (n,) of each vertex of the fine mesh is part of a vertex with a color, m²."""
-    colored: Mask = np.any(built.node_color >= 0, axis=1)
-    third = np.where(colored[fine.owner], fine.mesh.area_faces, 0.0) / 3
-    areas = np.bincount(fine.triangles.ravel(), np.repeat(third, 3), len(fine.vertices))
-    return areas.astype(np.float64)
 
 
 def reach(fine: FineMesh, located: Located, farthest: float) -> tuple[Array, Index]:

@@ -95,9 +95,9 @@ class Example:
 
         lines = {}
         for number, curve in self.decomposition.curves.items():
-            u, v = curve.steps[0]
+            u, v = curve[0]
             line = [middle(u, v, mesh.third[v, u])]
-            for u, v in curve.steps:
+            for u, v in curve:
                 line += [middle(u, v), middle(u, v, mesh.third[u, v])]
             lines[number] = self._smooth(np.array(line))
         return lines

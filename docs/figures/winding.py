@@ -52,11 +52,6 @@ def main(folder: Path) -> None:
         axis.set_aspect("equal")
         axis.set_title(title)
         axis.axis("off")
-    for a, b in ring.plan.walls:
-        middle, along = vertices[[a, b]].mean(axis=0)[:2], (vertices[b] - vertices[a])[:2]
-        aside = np.array([-along[1], along[0]]) / 2
-        ends = np.array([middle - aside, middle + aside])
-        axes[1].plot(ends[:, 0], ends[:, 1], color="tab:red", linewidth=2.5)
     axes[2].axhspan(-LIMIT, LIMIT, color="tab:green", alpha=0.1)
     axes[2].plot(
         np.arange(len(followed)) / 1000,

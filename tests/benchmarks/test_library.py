@@ -81,22 +81,6 @@ def test_no_bound_is_lost_when_a_graph_is_solved_again() -> None:
     assert needed([gone, bound(7, False, "strands")]) == (gone, bound(7, False, "strands"))
 
 
-def test_what_a_bound_of_an_earlier_version_becomes() -> None:
-    """What nothing verifies is dropped; what may not have come from a model does not say so."""
-    better = runpy.run_path(str(INSTANCES.parent / "benchmarks" / "library.py"))["better"]
-    ring = Solution.read(INSTANCES / SOLUTIONS / "ring.solution.json")
-    part = {"value": 9, "cells": [0], "conflicts": [], "hubs": [1]}
-    hubs = Bound("hubs", 9, "surface", {"left_out": [], "parts": [part]})
-    old = replace(ring, segments=9, bounds=(hubs, Bound("model", 10, "strands")))
-    merged = better(old, replace(old, bounds=(Bound("exact", 8, "surface"),)))
-    kinds = [(bound.kind, bound.value, bound.certificate) for bound in merged.bounds]
-    assert kinds == [("exact", 8, None), ("hubs", 9, None), ("earlier", 10, None)]
-    assert [note.split()[-1] for note in merged.notes] == ["hubs.", "earlier."]
-    again = better(merged, replace(merged, bounds=(Bound("exact", 9, "surface"),)))
-    assert [bound.kind for bound in again.bounds] == ["exact", "earlier"]
-    assert len(again.notes) == 1
-
-
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
     """A library of two graphs."""

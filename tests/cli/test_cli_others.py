@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from pathlib import Path
 from typing import Any
 
@@ -12,16 +11,12 @@ from commands import json_lines, run
 from documents import SURFACE
 from library import PAPER
 
-import cellcolor.cli.checking
 from cellcolor.data.instance import Instance
-from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 
 RING = PAPER / "ring.json"
 ZEROS = PAPER / "crossing-zeros.json"
-CORRIDORS = PAPER / "parallel-corridors.surface.json"
 Capture = pytest.CaptureFixture[str]
 
 
@@ -84,27 +79,6 @@ class TestCheck:
         solved.write_text("\n".join(lines[:3]) + "\n", encoding="utf-8")
         assert run("check", ZEROS, solved) == 1
         assert "schemes: says 3, listed are 2" in capsys.readouterr().out
-
-    def test_reading_counts_for_a_plan(
-        self, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        """A plan's time is over when the surface has been read: a range is known all the same."""
-        plan = tmp_path / "plan.json"
-        surface = LabelledSurface.read(CORRIDORS)
-        plan.write_text(Plan(tuple(own[0] for own in surface.vertex_colors)).to_json())
-        read_subject = cellcolor.cli.checking.read_subject
-
-        def slow(path: Path, deadline: Deadline, tolerance: None) -> Instance | LabelledSurface:
-            subject = read_subject(path, deadline, tolerance)
-            now = time.monotonic()
-            monkeypatch.setattr(time, "monotonic", lambda: now + 60)
-            return subject
-
-        monkeypatch.setattr(cellcolor.cli.checking, "read_subject", slow)
-        assert run("check", CORRIDORS, plan, "--json") == 0
-        verdict = json_lines(capsys.readouterr().out)[0]
-        # Nothing was proved, but the plan itself shows what is enough.
-        assert (verdict["lower_bound"], verdict["upper_bound"]) == (1, verdict["segments"])
 
 
 def test_a_plan_is_not_checked_against_a_graph_alone(tmp_path: Path, capsys: Capture) -> None:

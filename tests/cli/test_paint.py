@@ -57,23 +57,6 @@ def test_wrong_files_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert {path.name for path in tmp_path.iterdir()} == {"solution.json"}
 
 
-def test_the_surface_that_an_instance_names_is_not_overwritten(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    surface, instance = tmp_path / "c.surface.json", tmp_path / "c.json"
-    surface.write_bytes((PAPER / "parallel-corridors.surface.json").read_bytes())
-    before = surface.read_bytes()
-    assert run("build", surface, "-o", instance) == 0
-    solution = tmp_path / "solution.json"
-    assert run("solve", instance, "--search-space", "surface", "-o", solution) == 0
-    capsys.readouterr()
-    assert run("paint", instance, solution, "-o", surface) == 2
-    assert capsys.readouterr().err == (
-        f"cellcolor: {surface}: is an input, which would be overwritten\n"
-    )
-    assert surface.read_bytes() == before and not (tmp_path / "c.plan.json").exists()
-
-
 def test_a_scene_is_asked_what_reaches_new_vertices(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from meshes import surfaces
 
-from cellcolor.data.cells_and_edges import Cell, DartName, Edge, Strand, strand_of, twin
+from cellcolor.data.cells_and_edges import DartName, Strand, strand_of, twin
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
@@ -35,19 +35,6 @@ def test_what_is_live(surface: LabelledSurface) -> None:
         darts.append(sum(alive(instance, dart) for loop in cell.loops for dart in loop))
     assert instance.most_live_darts == max(darts, default=0)
     assert instance.most_live_loops == max(map(len, instance.live_loops), default=0)
-
-
-def test_dead_darts_and_dead_loops_are_left_out() -> None:
-    """Edge 2 is cracked in the only color, edge 3 leads outside: one live dart on one loop."""
-    instance = Instance(
-        "one",
-        ("red",),
-        (Cell(0, (0,), ((1, 2), (3,))), Cell(1, (0,), ((-1, -2),))),
-        (Edge(1, 0, 1), Edge(2, 0, 1, ()), Edge(3, 0, -1)),
-    )
-    assert instance.live_edges == (1,)
-    assert instance.live_loops == (((1,),), ((-1,),))
-    assert (instance.most_live_loops, instance.most_live_darts) == (1, 1)
 
 
 @pytest.mark.parametrize(

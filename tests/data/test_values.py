@@ -7,7 +7,6 @@ import json
 import pickle
 import re
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -75,15 +74,6 @@ def test_surfaces_are_equal_where_all_members_are(surface: LabelledSurface) -> N
         replace(surface, meta={"another": True}),
     ]
     assert all(other != surface for other in others)
-
-
-def test_a_solution_of_version_1_still_finds_its_instance_after_pickling() -> None:
-    """The fingerprint of the old file is kept apart from the members."""
-    file = Path(__file__).parents[1] / "files" / "version_1" / "foreign.json"
-    instance = Instance.read(file)
-    again = pickle.loads(pickle.dumps(instance))
-    assert again.sha256_of_version_1 == instance.sha256_of_version_1
-    assert again.sha256_of_version_1 != replace(instance).sha256_of_version_1  # made anew
 
 
 @pytest.mark.parametrize(

@@ -85,12 +85,6 @@ def test_no_time_for_the_graph() -> None:
     assert proven_range(drawn("... ...", {".": []}), time_limit=1e-9) == ProvenRange(0, 0)
 
 
-def test_nothing_reachable() -> None:
-    surface = drawn("... ...", {".": []})
-    verdict = judge(surface, Plan((None,) * 6))
-    assert (verdict.segments, verdict.lift_offs, verdict.optimal) == (0, 0, True)
-
-
 def test_contradiction_is_an_error() -> None:
     surface = drawn("AA AA", {"A": [RED]})
     with pytest.raises(BeatenBound) as found:

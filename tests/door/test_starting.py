@@ -129,6 +129,7 @@ def test_an_arm_with_an_offset_wrist_is_known(tmp_path: Path) -> None:
     assert json.loads(arm_of(file, None, "tip", tmp_path, {}).keys["family"]) == "offset-wrist"
 
 
+@pytest.mark.second
 def test_ready_to_plan(plate: Path, tmp_path: Path, capsys: Capture) -> None:
     folder = tmp_path / "new"
     assert run("new", plate, ROBOTS / "ur5.urdf", "-o", folder) == 0

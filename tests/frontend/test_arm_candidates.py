@@ -7,16 +7,14 @@ from __future__ import annotations
 
 import itertools
 
-import coal
 import numpy as np
 import pytest
 from independent import CONTACT, kinematics_apart
 from reasons import Reason
 from shipped import TOP, shipped
-from world import World
+from world import World, in_coal
 
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.contact.obstacle import CylinderObstacle
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
 
@@ -80,11 +78,7 @@ def test_candidates_against_pinocchio_and_coal(name: str, vertices: int, count: 
         "robot": prepared.contacts["self collision"](joints),
         "object": prepared.contacts["object collision"](joints),
     } | ({"obstacle": prepared.contacts["obstacle collision"](joints)} if scene.obstacle else {})
-    posts = []
-    for post in scene.obstacle:
-        assert isinstance(post, CylinderObstacle) and post.rpy_rad == (0.0, 0.0, 0.0)
-        pose = coal.Transform3s(np.eye(3), np.array(post.position_m))
-        posts.append((coal.Cylinder(post.radius_m, post.height_m), pose))
+    posts = [each for post in scene.obstacle for each in in_coal(post)]
     world = World(robot, prepared.surface.vertices, prepared.surface.faces)
     pairs, hits = not_neighbors(world), dict.fromkeys(verdicts, 0)
     for row, q in enumerate(joints):

@@ -67,7 +67,7 @@ def test_every_stage_asks_and_ends(part: Path, monkeypatch: pytest.MonkeyPatch) 
     # Once for its name, and at least once more on its way.
     times = [count for _, count in begun] + [asked[0]]
     assert all(np.diff(times) >= 2), times
-    for patience in range(0, asked[0], max(1, asked[0] // 25)):
+    for patience in range(0, asked[0], max(1, asked[0] // 10)):
         counting(monkeypatch, patience)
         with pytest.raises(OutOfTime):
             build_surface(part, Deadline())

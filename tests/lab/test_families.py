@@ -39,16 +39,6 @@ from examples import examples
 pytestmark = pytest.mark.second
 
 
-def test_cracks_lie_where_colors_are_common() -> None:
-    """The surface refuses cracks in other colors; here they exist, connect, and make edges."""
-    self_edges = 0
-    for seed in range(20):
-        surface = blobs(seed, 10, 2, coverage=(0.8, 1.0), cracks=2)
-        assert surface.cracks
-        self_edges += any(e.left == e.right for e in decompose(surface).edges)
-    assert self_edges > 10
-
-
 def test_hub_is_a_ring_around_one_cell() -> None:
     instance = hub(4, 9, 3)
     center, *petals = instance.cells

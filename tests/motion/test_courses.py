@@ -9,13 +9,17 @@ from typing import Any
 import numpy as np
 import pytest
 from painted import square
+from shipped import ROBOTS
 
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import NEVER
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.reach.prepared_arm import prepare_arm
+from cellcolor.frontend.setup import Setup
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion import courses
 from cellcolor.motion.courses import Course, laid_out
-from cellcolor.motion.following import DISTANCE, Followed, Samples, even_places, sampled
+from cellcolor.motion.following import DISTANCE, Followed, Samples, bowed, even_places, sampled
 from cellcolor.tool_paths.cover import cover
 from cellcolor.tool_paths.registry import PATTERNS
 
@@ -40,6 +44,7 @@ def course(passed_within: float, monkeypatch: pytest.MonkeyPatch) -> Course:
         return Followed(angle, reasons, np.zeros(len(samples) - 1, dtype=bool))
 
     monkeypatch.setattr(courses, "follow", follow)
+    monkeypatch.setattr(courses, "bowed", lambda _robot, joints: np.zeros(len(joints) - 1, bool))
     monkeypatch.setattr(courses, "off_way", lambda *_: False)
     monkeypatch.setattr(courses, "unwound", lambda joints, _: joints)
     monkeypatch.setattr(courses, "joint_space", lambda _: None)
@@ -71,6 +76,28 @@ def test_a_fast_joint_gets_samples_so_close_that_no_step_is_a_jump(
     # Where the joint is slow, samples are as far apart as ever.
     assert np.median(steps) > 0.9 * DISTANCE
     assert (np.ptp(steps) < 1e-12) == (passed_within > DISTANCE)
+
+
+def test_steps_that_bow_off_their_way_are_told() -> None:
+    """Of UR5 steps, small and large: the tip and the axis at places all along each of them."""
+    robot = prepare_arm(Setup.read(ROBOTS / "ur5_polishing.toml")).robot
+    rng = np.random.default_rng(5)
+    start = rng.uniform(-2, 2, (400, robot.joints))
+    size = 10 ** rng.uniform(-3, 0, (400, 1))
+    end = start + size * rng.uniform(-1, 1, start.shape)
+    told = np.array([bowed(robot, np.stack(pair))[0] for pair in zip(start, end, strict=True)])
+    between = [forward(robot, start + share * (end - start)) for share in np.linspace(0, 1, 9)]
+    tips, axes = (np.stack([getattr(at, name) for at in between]) for name in ("tip", "tool_axis"))
+    way = np.linspace(0, 1, 9)[:, None, None]
+    off = np.linalg.norm(tips - ((1 - way) * tips[0] + way * tips[-1]), axis=2).max(axis=0)
+    straight = (1 - way) * axes[0] + way * axes[-1]
+    straight /= np.linalg.norm(straight, axis=2, keepdims=True)
+    tilt = np.degrees(np.arccos(np.clip((axes * straight).sum(axis=2), -1, 1))).max(axis=0)
+    # What is let through stays well inside what the judge allows: a sample, and 1 degree.
+    share = off / np.linalg.norm(tips[-1] - tips[0], axis=1)
+    assert share[~told].max() < 0.4 and tilt[~told].max() < 0.75
+    assert ((share > 0.25) | (tilt > 0.4))[told].all()
+    assert 50 < told.sum() < 350
 
 
 @pytest.mark.parametrize("beyond", [0.0, 1e-6, 2e-5])

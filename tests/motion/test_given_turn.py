@@ -5,15 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from bent_tools import tip_frame
-from motions import planned_scene
 from shipped import TOP
 from turned_scenes import plate, setup
 
+import cellcolor
 from cellcolor.errors import InputError
 from cellcolor.frontend import Scene
 from cellcolor.frontend.prepared import prepare
 from cellcolor.motion.limits import motion_of
-from cellcolor.trajectory_checker.check import check_trajectory
 
 
 @pytest.mark.second
@@ -22,16 +21,15 @@ def test_a_motion_with_two_turns_is_valid_and_lifts_off_to_change_them() -> None
     goal = np.array([0.3, 0.0, 0.5])
     rule = {"towards_m": tuple(goal), "turns_deg": (0.0, 90.0)}
     scene = plate(setup(rule, limits=(-1.2, 0.2)), 150)
-    motion = planned_scene(scene.varied(object={"size_x_m": 0.12, "size_y_m": 0.4}))
-    trajectory, surface = motion.plan.trajectory, motion.built.surface
-    assert trajectory.lift_offs == motion.lift_offs >= 1
-    verdict = check_trajectory(motion.built, trajectory, minimum_lift_offs=motion.lift_offs)
-    assert verdict.valid, verdict.faults
+    motion = cellcolor.plan(scene.varied(object={"size_x_m": 0.12, "size_y_m": 0.4}))
+    trajectory, surface = motion.trajectory, motion.built.surface
+    assert trajectory.lift_offs == motion.solution.lift_offs >= 1
+    assert motion.verdict.valid, motion.verdict.faults
     numbers = []
     for first, after in trajectory.strokes:
         turns = set()
         for sample in range(first, after, 40):
-            pose = tip_frame(motion.prepared.robot.model, trajectory.joints[sample])
+            pose = tip_frame(motion.built.robot.model, trajectory.joints[sample])
             x, y, z = pose.rotation.T
             assert np.abs(z - [0, 0, -1]).max() < 1e-6
             flat = (goal - pose.translation) * [1, 1, 0]

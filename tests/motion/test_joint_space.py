@@ -68,15 +68,6 @@ def test_a_slide_fits_as_it_is_or_not_at_all(path: list[float], lower: float) ->
     assert both.fits(np.array([path, path]).T) == (inside and bool(fitting))
 
 
-def test_a_slide_of_a_circle_in_meters_is_no_turn() -> None:
-    both = space([True, False])
-    way = np.array([math.tau, math.tau])
-    assert both.periods(way).tolist() == [0, 1]
-    assert both.period.tolist() == [0, math.tau]
-    # 0.3 m of a reach of 0.5 m are more than half a radian, and less than a whole one.
-    assert both.largest(np.array([[0.3, 0.5], [0.3, 0.7]])).tolist() == [0.6, 0.7]
-
-
 def test_a_proposed_home_moves_a_slide_by_its_share_of_the_reach() -> None:
     """0.1 rad at first, so 0.05 m on an arm that reaches 0.5 m."""
 

@@ -10,15 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import NEVER
 from cellcolor.frontend.arm.joint_space import JointSpace
-from cellcolor.motion.following import Followed, Samples, sampled
+from cellcolor.motion.following import Followed, Samples
 from cellcolor.motion.order import Visit, chosen_turns, ordered
 from cellcolor.motion.strokes import Stroke, cut_where_full, trimmed
 from cellcolor.motion.ways import quickest_way
 
-ANGLES = st.floats(-3.0, 3.0)
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -32,27 +30,6 @@ def stroke(joints: np.ndarray, segment: int = 0) -> Stroke:
     """Samples on a line along x, with these joints."""
     points = np.column_stack([np.arange(len(joints)) * 1e-3, np.zeros((len(joints), 2))])
     return Stroke(segment, 0, points, np.tile(UP, (len(joints), 1)), joints)
-
-
-@given(st.lists(st.tuples(ANGLES, ANGLES), min_size=2, max_size=12, unique=True))
-def test_samples_lie_on_the_path_and_are_near_each_other(
-    corners: list[tuple[float, float]],
-) -> None:
-    points = np.array([[x * 0.01, y * 0.01, 0.0] for x, y in corners])
-    tilt = np.array([[0.3 * x, 0.3 * y, 1.0] for x, y in corners])
-    normals = tilt / np.linalg.norm(tilt, axis=1, keepdims=True)
-    path = ToolPath(0, 0, points, normals, np.zeros(len(points) - 1, dtype=np.int64))
-    samples = sampled(path)
-    assert np.abs(samples.points[[0, -1]] - points[[0, -1]]).max() < 1e-12
-    assert np.linalg.norm(np.diff(samples.points, axis=0), axis=1).max() <= 1e-3
-    dots = (samples.normals[1:] * samples.normals[:-1]).sum(axis=1)
-    assert np.rad2deg(np.arccos(np.clip(dots, -1, 1))).max() <= 1.0 + 1e-6
-    for point in samples.points:  # the distance from the nearest of the path's straight pieces
-        start, along = points[:-1], np.diff(points, axis=0)
-        squares = np.maximum((along**2).sum(axis=1), 1e-18)
-        part = np.clip(((point - start) * along).sum(axis=1) / squares, 0, 1)
-        off = np.linalg.norm(start + part[:, None] * along - point, axis=1)
-        assert off.min() < 1e-9
 
 
 def test_a_bad_sample_and_a_jump_cut_a_path_and_are_named() -> None:

@@ -6,9 +6,8 @@ import re
 from dataclasses import replace
 
 import numpy as np
-import pinocchio as pin
 import pytest
-from motions import Planned, planned_scene
+from bent_tools import tip_frames
 from scipy.spatial import cKDTree
 from shipped import ROBOTS, shipped, with_keys
 
@@ -26,36 +25,23 @@ pytestmark = pytest.mark.second
 
 
 @pytest.fixture(scope="module", params=["half_pipe", "wok_obstacle"])
-def motion(request: pytest.FixtureRequest) -> Planned:
+def motion(request: pytest.FixtureRequest) -> cellcolor.PlannedScene:
     """A motion with one lift-off, and one with two around an obstacle."""
     scene = shipped(request.param, 500)
-    return planned_scene(scene.with_setup(with_keys(scene.setup, spacing_m=0.02)))
-
-
-def tip_poses(motion: Planned, joints: Array) -> tuple[Array, Array]:
-    """Where the tip is and where the tool points, by Pinocchio on the robot's own model."""
-    model = motion.prepared.robot.model
-    data, frame = model.createData(), model.getFrameId("tool_tip")
-    points, axes = [], []
-    for configuration in joints:
-        pin.forwardKinematics(model, data, configuration)
-        pose = pin.updateFramePlacement(model, data, frame)
-        points.append(pose.translation.copy())
-        axes.append(pose.rotation[:, 2].copy())
-    return np.array(points), np.array(axes)
+    return cellcolor.plan(scene, spacing_m=0.02)
 
 
 def test_the_tip_is_where_the_trajectory_says_and_the_tool_goes_against_the_normal(
-    motion: Planned,
+    motion: cellcolor.PlannedScene,
 ) -> None:
-    trajectory = motion.plan.trajectory
-    points, axes = tip_poses(motion, trajectory.joints)
+    trajectory = motion.trajectory
+    points, axes, _ = tip_frames(motion.built.robot.model, trajectory.joints)
     assert np.abs(points - trajectory.points).max() < 1e-6
     assert np.abs(axes + trajectory.normals).max() < 1e-6
 
 
-def test_in_contact_the_tip_is_on_the_tool_path(motion: Planned) -> None:
-    trajectory, paths = motion.plan.trajectory, motion.plan.paths.paths
+def test_in_contact_the_tip_is_on_the_tool_path(motion: cellcolor.PlannedScene) -> None:
+    trajectory, paths = motion.trajectory, motion.paths.paths
     for first, end in trajectory.strokes:
         path = next(p for p in paths if p.segment == trajectory.segment[first])
         # The path as points 0.1 mm apart: a sample that lies on it has one within half of that.
@@ -70,12 +56,12 @@ def test_in_contact_the_tip_is_on_the_tool_path(motion: Planned) -> None:
 
 
 @pytest.mark.parametrize("motion", ["wok_obstacle"], indirect=True)
-def test_the_tool_touches_at_the_approach_speed(motion: Planned) -> None:
-    setup = motion.prepared.setup.varied(motion={"approach_speed_m_per_s": 0.004})
-    prepared = prepare(motion.prepared.scene.with_setup(setup))
+def test_the_tool_touches_at_the_approach_speed(motion: cellcolor.PlannedScene) -> None:
+    setup = motion.built.prepared.setup.varied(motion={"approach_speed_m_per_s": 0.004})
+    prepared = prepare(motion.built.prepared.scene.with_setup(setup))
     built = replace(motion.built, prepared=prepared)
     slow = plan_motion(built, motion.painted).trajectory
-    for trajectory, within in ((slow, True), (motion.plan.trajectory, False)):
+    for trajectory, within in ((slow, True), (motion.trajectory, False)):
         steps = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1)
         speed = steps / np.diff(trajectory.times)
         touching = trajectory.contact[1:] != trajectory.contact[:-1]
@@ -85,18 +71,21 @@ def test_the_tool_touches_at_the_approach_speed(motion: Planned) -> None:
         assert ("velocity" in verdict.fault_counts) != within
 
 
-def test_lift_offs_are_the_proved_minimum_and_all_transfers_are_planned(motion: Planned) -> None:
-    trajectory = motion.plan.trajectory
-    assert trajectory.lift_offs == motion.lift_offs
+def test_lift_offs_are_the_proved_minimum_and_all_transfers_are_planned(
+    motion: cellcolor.PlannedScene,
+) -> None:
+    trajectory = motion.trajectory
+    assert motion.verdict.valid
+    assert trajectory.lift_offs == motion.solution.lift_offs
     assert trajectory.extra_lift_offs == ()
     assert trajectory.unplanned == ()
 
 
 @pytest.mark.parametrize("motion", ["wok_obstacle"], indirect=True)
-def test_the_same_scene_and_seed_give_the_same_trajectory(motion: Planned) -> None:
+def test_the_same_scene_and_seed_give_the_same_trajectory(motion: cellcolor.PlannedScene) -> None:
     again = plan_motion(motion.built, motion.painted)
-    assert again.trajectory == motion.plan.trajectory
-    assert again.paths == motion.plan.paths
+    assert again.trajectory == motion.trajectory
+    assert again.paths == motion.paths
 
 
 def test_segments_overlap_where_both_colors_are_valid() -> None:
@@ -107,8 +96,8 @@ def test_segments_overlap_where_both_colors_are_valid() -> None:
     """
     scene = shipped("half_pipe", 500)
     keys = {"spacing_m": 0.01, "overlap_m": 0.03}
-    motion = planned_scene(scene.with_setup(with_keys(scene.setup, **keys)))
-    drive, mesh = motion.plan.trajectory, motion.painted.surface.mesh
+    motion = cellcolor.plan(scene.with_setup(with_keys(scene.setup, **keys)))
+    drive, mesh = motion.trajectory, motion.painted.surface.mesh
     corners = mesh.points[mesh.corners]
     shares = np.random.default_rng(0).dirichlet([1.0, 1.0, 1.0], 60)
     points = np.einsum("kc,mcd->mkd", shares, corners).reshape(-1, 3)
@@ -120,8 +109,7 @@ def test_segments_overlap_where_both_colors_are_valid() -> None:
         beyond = cKDTree(points[segment_of == segment]).query(samples)[0]
         farthest.append(beyond.max())
     assert 0.018 < sum(farthest) < 0.035
-    verdict = check_trajectory(motion.built, drive, minimum_lift_offs=motion.lift_offs)
-    assert verdict.valid
+    assert motion.verdict.valid
 
 
 def test_a_setup_without_a_motion_and_one_that_does_not_fit_are_refused() -> None:

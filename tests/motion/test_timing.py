@@ -2,42 +2,16 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from joint_drives import driven, faults_of
-from scipy.optimize import linprog
 
 from cellcolor.arrays import Array
 from cellcolor.data.trajectory_verdict import FaultKind
-from cellcolor.motion.timing import Speeds, _swept, evenly_timed, timed
+from cellcolor.motion.timing import Speeds, evenly_timed, timed
 from examples import examples
-
-
-@examples(12)
-@given(st.integers(0, 10**6), st.integers(2, 60))
-def test_times_keep_velocities_and_accelerations(seed: int, count: int) -> None:
-    rng = np.random.default_rng(seed)
-    corners = rng.uniform(-0.3, 0.3, size=(4, 3))
-    at = np.linspace(0, 3, count)
-    joints = np.column_stack([np.interp(at, np.arange(4), corners[:, j]) for j in range(3)])
-    points = 0.4 * joints
-    speeds = Speeds(np.array([1.0, 0.5, 2.0]), np.array([8.0, 3.0, 5.0]))
-    times = timed(joints, speeds, points, 0.05)
-    steps = np.diff(times)
-    assert times[0] == 0
-    assert steps.min() > 0
-    velocity = np.diff(joints, axis=0) / steps[:, None]
-    assert (np.abs(velocity) <= speeds.velocities * (1 + 1e-9)).all()
-    assert (np.linalg.norm(np.diff(points, axis=0), axis=1) <= 0.05 * steps * (1 + 1e-9)).all()
-    # From rest to rest: before the first step and after the last one nothing moves.
-    whole = np.concatenate([np.zeros((1, 3)), velocity, np.zeros((1, 3))])
-    between = (np.append(steps, 0.0) + np.insert(steps, 0, 0.0)) / 2
-    change = np.diff(whole, axis=0) / between[:, None]
-    assert (np.abs(change) <= speeds.accelerations * (1 + 1e-9)).all()
 
 
 def test_many_sharp_bends_slow_down_only_what_is_beside_them() -> None:
@@ -71,39 +45,6 @@ def test_closer_samples_do_not_slow_down() -> None:
         times = timed(joints, Speeds(np.full(2, 3.0), np.full(2, 5.0)), points, 0.6)
         speeds = np.linalg.norm(np.diff(points, axis=0), axis=1) / np.diff(times)
         assert speeds[5:-5] == pytest.approx(0.6)
-
-
-@examples(30)
-@given(st.integers(0, 10**6), st.integers(2, 20), st.integers(1, 3))
-def test_no_way_within_the_limits_is_faster(seed: int, steps: int, joints: int) -> None:
-    """A linear program over all steps at once finds no larger sum of squares."""
-    rng = np.random.default_rng(seed)
-    way = np.cumsum(rng.normal(size=(steps + 1, joints)) * rng.choice([0.01, 0.1], joints), axis=0)
-    least = rng.uniform(0.01, 0.1, steps)
-    cap = rng.uniform(0.2, 1.0, steps)
-    most = rng.uniform(1.0, 10.0, joints)
-    found = _swept(way, least, cap, most)
-    velocity = np.diff(way, axis=0) / least[:, None]
-    rows, bounds, upper = [], [], cap.copy()
-    for end in (0, -1):  # from rest in half a step, with the step's speed as it is
-        upper[end] = min(upper[end], *(most * least[end] / 2 / np.abs(velocity[end])))
-    for k, (before, after) in enumerate(pairwise(velocity)):
-        middles = (least[k] + least[k + 1]) / 2
-        for joint in range(joints):
-            row = np.zeros(steps)
-            row[k] = (after[joint] - 3 * before[joint]) / 4
-            row[k + 1] = (3 * after[joint] - before[joint]) / 4
-            rows += [row, -row]
-            bounds += [most[joint] * middles] * 2
-            bend = most[joint] * middles / abs(after[joint] - before[joint])
-            upper[k], upper[k + 1] = min(upper[k], bend), min(upper[k + 1], bend)
-    best = linprog(
-        -np.ones(steps),
-        A_ub=np.array(rows) if rows else None,
-        b_ub=bounds or None,
-        bounds=[(0.0, most_of) for most_of in upper],
-    )
-    assert found == pytest.approx(best.x, rel=1e-6, abs=1e-9)
 
 
 def faults(joints: Array, times: Array, speeds: Speeds) -> set[FaultKind]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import networkx as nx
 import numpy as np
 import pytest
-from motions import Planned, planned_scene, ring_scene
+from motions import ring_scene
 
+import cellcolor
 from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.motion.windings import Steps, walls_of
 from cellcolor.tool_paths.measures import in_all
@@ -15,22 +16,24 @@ pytestmark = pytest.mark.second
 
 
 @pytest.fixture(scope="module")
-def ring() -> Planned:
+def ring() -> cellcolor.PlannedScene:
     """A motion over the ring."""
-    return planned_scene(ring_scene(np.deg2rad(200)))
+    return cellcolor.plan(ring_scene(np.deg2rad(200)))
 
 
-def test_the_chosen_path_stays_in_the_limits_without_a_lift_off(ring: Planned) -> None:
-    trajectory, robot = ring.plan.trajectory, ring.prepared.robot
-    assert trajectory.lift_offs == ring.lift_offs == 0
+def test_the_chosen_path_stays_in_the_limits_without_a_lift_off(
+    ring: cellcolor.PlannedScene,
+) -> None:
+    trajectory, robot = ring.trajectory, ring.built.robot
+    assert trajectory.lift_offs == ring.solution.lift_offs == 0
     assert trajectory.extra_lift_offs == ()
     assert (trajectory.joints >= robot.lower).all()
     assert (trajectory.joints <= robot.upper).all()
     assert np.ptp(trajectory.joints[trajectory.contact][:, 0]) > 1.8 * np.pi  # nearly all round
-    assert in_all(list(ring.plan.measures)).covered_wide > 0.99
+    assert in_all(list(ring.measures)).covered_wide > 0.99
 
 
-def test_cracks_of_the_color_open_the_ring_and_do_not_part_it(ring: Planned) -> None:
+def test_cracks_of_the_color_open_the_ring_and_do_not_part_it(ring: cellcolor.PlannedScene) -> None:
     surface = ring.painted.surface
     graph = nx.Graph(edge for edge in surface.left_of)
     (color,) = {color for color in ring.painted.plan.vertex_colors if color is not None}

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
 from library import INSTANCES
 from meshes import drawn
 from planners import (
     largest_set_first,
-    nearest_along_raster,
 )
 
 import cellcolor
@@ -37,20 +34,3 @@ def test_figure_1_greedy_pays_a_lift_off() -> None:
     assert judge.judge(greedy).lift_offs == 2
     painted = [green if green in own else blue for own in surface.vertex_colors]
     assert judge.judge(painted).lift_offs == 1 == judge.bounds.lower - 1
-
-
-@pytest.mark.parametrize(("angle", "before"), [(0.0, 2), (np.pi / 2, 4)])
-def test_the_raster_goes_on_in_the_branch_that_is_nearest(angle: float, before: int) -> None:
-    """Red jumps by 3 rad in the middle column; blue is 0.5 rad away there, and full circles.
-
-    From either end two columns of two vertices come before the middle: two vertices of the first
-    row if rows go along the surface, four if they go across. After that blue does not move.
-    """
-    surface = drawn("PPPPP PPPPP", LABELS)
-    configurations = np.zeros((10, 3, 1))
-    configurations[[2, 7], RED] = 3.0
-    configurations[:, BLUE, 0] = 0.5 + 2 * np.pi * np.arange(10)
-    colors = nearest_along_raster(surface, configurations, angle)
-    assert colors.count(RED) == before and colors.count(BLUE) == 10 - before
-    columns = {vertex % 5 for vertex, color in enumerate(colors) if color == RED}
-    assert columns in ({0, 1}, {3, 4})

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -16,7 +14,6 @@ from planted_plans import PLANTERS, Case, caught
 import cellcolor
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.lab.families import blobs
-from cellcolor.oracle import ProvenRange
 from examples import examples
 
 RED, BLUE = 0, 1
@@ -54,19 +51,3 @@ def test_no_valid_plan_contradicts_its_verdict(surface: LabelledSurface, seed: i
         for judge in (oracle, hurried):
             verdict = judge.judge(colors)
             assert contradictions(judge, colors, verdict, oracle.bounds.upper) == []
-
-
-def test_what_contradicts_a_verdict_is_seen() -> None:
-    oracle = cellcolor.Oracle(ROW, workers=1)
-    colors = [RED, RED, BLUE, BLUE, RED, RED] * 3
-    verdict = oracle.judge(colors)
-    assert contradictions(oracle, colors, verdict, 1) == []
-    one_less = replace(verdict, segments=2)
-    assert contradictions(oracle, colors, one_less, 1)[0] == "2 segments, 3 by networkx"
-    too_high = cellcolor.Oracle(ROW, bounds=ProvenRange(3, 3))
-    found = contradictions(too_high, colors, too_high.judge(colors), 1)
-    assert found[0] == "1 segments, below the bound 3"
-    assert "cannot be beaten with 3 segments, another has 1" in found
-    assert contradictions(oracle, colors, replace(verdict, improvement=None), 1)
-    refused = oracle.judge([BLUE] * 18)
-    assert contradictions(oracle, colors, refused, 1)[0].startswith("refused: not valid")

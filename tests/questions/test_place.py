@@ -70,6 +70,17 @@ def by_hand(scene: Scene) -> tuple[int | None, float, int]:
     return solution.segments, share, len(areas)
 
 
+def test_a_mesh_file_is_made_coarser_and_collides_as_before() -> None:
+    scene = Scene.read(SCENES.parent / "parts" / "bracket.toml")
+    coarse = coarse_scene(scene, 150, NEVER)
+    whole, surface = scene.covered(), coarse.covered()
+    assert len(surface.vertices) < len(whole.vertices) / 1.5
+    area, wanted = surface.mesh.vertex_areas.sum(), whole.mesh.vertex_areas.sum()
+    assert area == pytest.approx(wanted, rel=0.05)
+    assert coarse.solid_object == (scene.solid_object or scene.object)
+    assert coarse_scene(scene, 10**5, NEVER).covered().vertices.shape == whole.vertices.shape
+
+
 def test_rows_are_those_of_the_scene_with_the_placement_written_in(found: Placements) -> None:
     own = shipped("wok_obstacle", 80)
     coarse = coarse_scene(own, 50, NEVER)

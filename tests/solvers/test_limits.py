@@ -23,7 +23,6 @@ from cellcolor.solvers.bounds.cover import color_regions, set_cover
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import CompleteModel, complete_model
 from cellcolor.solvers.cpsat import part as part_module
-from cellcolor.solvers.cpsat.dart_graph import split
 from cellcolor.solvers.interface import Options
 from examples import examples
 
@@ -143,18 +142,3 @@ def test_a_real_part_is_proved(name: str) -> None:
 
 
 # --- parts ----------------------------------------------------------------------------------------
-
-
-@examples(20)
-@given(seed=SEEDS, cells=st.integers(2, 10), colors=st.integers(2, 4))
-def test_parts_are_what_live_edges_connect(seed: int, cells: int, colors: int) -> None:
-    instance = planar_graph(seed, cells, cells + 3, colors)
-    parts = split(instance)
-    assert sorted(cell for _, own in parts for cell in own) == list(range(cells))
-    part_of = {cell: number for number, (_, own) in enumerate(parts) for cell in own}
-    for edge in instance.edges:
-        if instance.joinable(edge.id):
-            assert part_of[edge.left] == part_of[edge.right]
-    for part, whole in parts:
-        assert all(cells <= set(range(len(whole))) for _, cells in color_regions(part))
-        assert [cell.colors for cell in part.cells] == [instance.cells[c].colors for c in whole]

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import pytest
 from library import PAPER
 from meshes import drawn
@@ -16,7 +14,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, RefusedResult
 from cellcolor.solvers.checked import enumerate_schemes, solve
-from cellcolor.solvers.interface import STRANDS, Options
+from cellcolor.solvers.interface import Options
 
 RING = Instance.read(PAPER / "ring.json")
 CORRIDORS = Instance.read(PAPER / "parallel-corridors.json")
@@ -54,18 +52,6 @@ def test_time_that_is_no_number() -> None:
     for make in (lambda: Deadline.after(math.nan), lambda: Deadline(math.nan)):
         with pytest.raises(InputError, match="time_limit: is not a number of seconds"):
             make()
-
-
-def test_one_default_for_strands() -> None:
-    """Alone and in a solution; the command line and the oracle take the same."""
-    for space, strands in STRANDS.items():
-        assert Options(space).strands == strands
-        assert solve(RING, Options(space)).strands == strands
-    assert Options("surface", np.int64(3)).strands == 3
-    # What was asked for stays when something else is replaced.
-    assert replace(Options("surface", 3), seed=1).strands == 3
-    with pytest.raises(InputError, match="strands"):
-        replace(Options("surface"), search_space="paper")
 
 
 @pytest.mark.parametrize("options", [{"strands": 0}, {"workers": 0}, {"seed": -1}])

@@ -52,6 +52,15 @@ def joints_of(built: BuildResult, plan: Plan) -> Array:
     return joints
 
 
+def walk_round(graph: networkx.Graph, start: int) -> list[int]:
+    """Vertices round a spanning tree of the component of one, which is at both ends."""
+    walk = [start]
+    for one, other, kind in networkx.dfs_labeled_edges(graph, start):
+        if one != other and kind != "nontree":
+            walk.append(other if kind == "forward" else one)
+    return walk
+
+
 def walk_of(built: BuildResult, plan: Plan) -> tuple[ContactPath, list[int]]:
     """A path with a stroke a segment that walks along the mesh, and the vertex of each sample.
 
@@ -66,12 +75,7 @@ def walk_of(built: BuildResult, plan: Plan) -> tuple[ContactPath, list[int]]:
             graph.add_edge(a, b)
     vertices, contact = [], []
     for segment in networkx.connected_components(graph):
-        walk = [min(segment)]
-        for one, other, kind in networkx.dfs_labeled_edges(graph, min(segment)):
-            if kind == "forward" and one != other:
-                walk.append(other)
-            elif kind == "reverse" and one != other:
-                walk.append(one)
+        walk = walk_round(graph, min(segment))
         vertices += [*walk, walk[-1]]
         contact += [True] * len(walk) + [False]
     joints = np.array([configuration(built, v, colors[v] or 0) for v in vertices])

@@ -25,11 +25,6 @@ def die() -> None:
     os.kill(os.getpid(), signal.SIGKILL)
 
 
-def take(megabytes: int) -> int:
-    """Have so much memory for a moment."""
-    return len(bytearray(b"x" * 2**20) * megabytes)
-
-
 def swell() -> None:
     """Take more and more memory, 50 MB at a time."""
     taken = []

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -45,6 +46,24 @@ class Program:
     called: list[int] = field(default_factory=list)
     tool: np.ndarray | None = None
     part: np.ndarray | None = None
+    asked: list[float] = field(default_factory=list)
+
+    def begin(self, joints: np.ndarray) -> None:
+        """A stretch that begins at some joints, degrees."""
+        self.starts.append(joints)
+        self.stretches.append([])
+
+    def ask(self, number: str, angle: str) -> None:
+        """A joint's angle before a stretch; the sixth begins it."""
+        self.asked.append(float(angle))
+        if int(number) == 6:
+            self.begin(np.array(self.asked[-6:]))
+
+    def go(self, kind: str, **what: Any) -> None:
+        self.stretches[-1].append(Go(kind, **what))
+
+    def call(self, number: str) -> None:
+        self.called.append(int(number))
 
 
 def numbers(text: str) -> np.ndarray:
@@ -79,31 +98,23 @@ def _read(lines: list[str], grammar: list[tuple[str, str, Callable[..., None] | 
 
 
 def read_urscript(text: str) -> Program:
-    found, step, frames, pressed = Program(), [0.0], {}, [False]
+    found, step, frames = Program(), [0.0], {}
 
     def frame(name: str, given: str) -> None:
         six = numbers(given)
         frames[name] = pose_of(six[:3], Rotation.from_rotvec(six[3:]))
 
-    def start(given: str) -> None:
-        found.starts.append(np.degrees(numbers(given)))
-        found.stretches.append([])
-
     def go(given: str, count: str) -> None:
-        own = np.degrees(numbers(given))
-        found.stretches[-1].append(Go("joint", own, seconds=float(count) * step[0]))
+        found.go("joint", joints=np.degrees(numbers(given)), seconds=float(count) * step[0])
 
     def line(name: str, given: str, feed: str) -> None:
         six = numbers(given)
         pose = pose_of(six[:3], Rotation.from_rotvec(six[3:]))
         assert name in frames
-        found.stretches[-1].append(Go("linear", pose=pose, feed=float(feed)))
+        found.go("linear", pose=pose, feed=float(feed))
 
     def tcp(name: str) -> None:
         found.tool = frames[name]
-
-    def flow(kind: str) -> Callable[[], None]:
-        return lambda: found.stretches[-1].append(Go(kind))
 
     share = ", ".join(rf"at\[{i}\] \+ s \* \(to\[{i}\] - at\[{i}\]\)" for i in range(6))
     force = rf"force_mode\(get_actual_tcp_pose\(\), {LIST}, {LIST}, 2, {LIST}\)"
@@ -117,7 +128,7 @@ def read_urscript(text: str) -> Program:
             ("end", "-def while if", None),
             (rf"global (\w+) = p({LIST})", "", frame),
             (r"set_tcp\((\w+)\)", "", tcp),
-            (rf"start = ({LIST})", "", start),
+            (rf"start = ({LIST})", "", lambda own: found.begin(np.degrees(numbers(own)))),
             (rf"go\(({LIST}), ({N})\)", "", go),
             (rf"movep\(pose_trans\((\w+), p({LIST})\), a={N}, v=({N}), r={N}\)", "", line),
             (
@@ -125,10 +136,10 @@ def read_urscript(text: str) -> Program:
                 "",
                 lambda own: step.__setitem__(0, float(own)),
             ),
-            (force, "", flow("press")),
-            (r"end_force_mode\(\)", "", flow("release")),
-            (r"stretch_(\d+)\(\)", "", lambda number: found.called.append(int(number))),
-            (r"global pressing = (False)", "", lambda _: pressed.__setitem__(0, True)),
+            (force, "", lambda: found.go("press")),
+            (r"end_force_mode\(\)", "", lambda: found.go("release")),
+            (r"stretch_(\d+)\(\)", "", found.call),
+            ("global pressing = False", "", None),
             (r"global at = (?:to|start|get_actual_joint_positions\(\))", "", None),
             (rf"global at = {LIST}", "", None),
             (r"here = get_actual_joint_positions\(\)|[is] = [i0-9. +/n]+", "", None),
@@ -140,7 +151,7 @@ def read_urscript(text: str) -> Program:
 
 
 def read_rapid(text: str) -> Program:
-    found, asked = Program(), []
+    found = Program()
 
     def frame(what: str, given: str) -> None:
         x, y, z, *turn = numbers(given)[:7]
@@ -148,19 +159,13 @@ def read_rapid(text: str) -> Program:
         pose = pose_of(np.array([x, y, z]) / 1e3, Rotation.from_quat([*vector, w]))
         setattr(found, {"tooldata": "tool", "wobjdata": "part"}[what], pose)
 
-    def start(number: str, angle: str) -> None:
-        asked.append(float(angle))
-        if int(number) == 6:
-            found.starts.append(np.array(asked[-6:]))
-            found.stretches.append([])
-
     def joint(given: str, seconds: str) -> None:
-        found.stretches[-1].append(Go("joint", numbers(given), seconds=float(seconds)))
+        found.go("joint", joints=numbers(given), seconds=float(seconds))
 
     def line(at: str, turn: str, feed: str) -> None:
         w, *vector = numbers(turn)
         pose = pose_of(numbers(at) / 1e3, Rotation.from_quat([*vector, w]))
-        found.stretches[-1].append(Go("linear", pose=pose, feed=float(feed) / 1e3))
+        found.go("linear", pose=pose, feed=float(feed) / 1e3)
 
     external = r"\[9E9(?:,9E9){5}\]"
     _read(
@@ -171,7 +176,7 @@ def read_rapid(text: str) -> Program:
             ("ENDMODULE", "-module", None),
             (r"PROC \w+\(\)", "+proc", None),
             ("ENDPROC", "-proc", None),
-            (rf"IF Abs\(here\.robax\.rax_(\d) - \(({N})\)\) > {N} THEN", "+if", start),
+            (rf"IF Abs\(here\.robax\.rax_(\d) - \(({N})\)\) > {N} THEN", "+if", found.ask),
             ("ENDIF", "-if", None),
             (rf"PERS (tooldata) \w+ := \[TRUE,(\[{LIST},{LIST}\]),\[.*\]\];", "", frame),
             (rf'PERS (wobjdata) \w+ := \[FALSE,TRUE,"",(\[{LIST},{LIST}\]),.*\];', "", frame),
@@ -186,7 +191,7 @@ def read_rapid(text: str) -> Program:
                 "",
                 line,
             ),
-            (r"stretch_(\d+);", "", lambda number: found.called.append(int(number))),
+            (r"stretch_(\d+);", "", found.call),
             (r"VAR jointtarget here;|here := CJointT\(\);|Stop;|ConfL\\Off;", "", None),
             (r'TPWrite "[^"]*";', "", None),
         ],
@@ -199,7 +204,7 @@ def _turned(z_y_x: np.ndarray) -> Rotation:
 
 
 def read_krl(text: str) -> Program:
-    found, asked, said = Program(), [], {"share": 0.0, "feed": 0.0}
+    found, said = Program(), {"share": 0.0, "feed": 0.0}
     six = rf"\{{X ({N}), Y ({N}), Z ({N}), A ({N}), B ({N}), C ({N})\}}"
     angles = rf"\{{{', '.join(rf'A{i} ({N})' for i in range(1, 7))}\}}"
 
@@ -210,18 +215,12 @@ def read_krl(text: str) -> Program:
     def frame(what: str, *given: str) -> None:
         setattr(found, {"TOOL": "tool", "BASE": "part"}[what], place(*given))
 
-    def start(number: str, angle: str) -> None:
-        asked.append(float(angle))
-        if int(number) == 6:
-            found.starts.append(np.array(asked[-6:]))
-            found.stretches.append([])
-
     def joint(*given: str) -> None:
         own = np.array([float(one) for one in given])
-        found.stretches[-1].append(Go("joint", own, share=said["share"]))
+        found.go("joint", joints=own, share=said["share"])
 
     def line(*given: str) -> None:
-        found.stretches[-1].append(Go("linear", pose=place(*given), feed=said["feed"]))
+        found.go("linear", pose=place(*given), feed=said["feed"])
 
     _read(
         text.splitlines(),
@@ -230,7 +229,7 @@ def read_krl(text: str) -> Program:
             (r";.*|&ACCESS RVP|&COMMENT .*", "", None),
             (r"DEF \w+\( \)|DEF speed_of_axes\(percent :IN\)", "+def", None),
             ("END", "-def", None),
-            (rf"IF ABS\(\$AXIS_ACT\.A(\d) - \(({N})\)\) > {N} THEN", "+if", start),
+            (rf"IF ABS\(\$AXIS_ACT\.A(\d) - \(({N})\)\) > {N} THEN", "+if", found.ask),
             ("ENDIF", "-if", None),
             ("FOR i = 1 TO 6", "+for", None),
             ("ENDFOR", "-for", None),
@@ -238,7 +237,7 @@ def read_krl(text: str) -> Program:
             (rf"\$VEL\.CP = ({N})", "", lambda own: said.update(feed=float(own))),
             (rf"PTP {angles}(?: C_PTP)?", "", joint),
             (rf"LIN {six}(?: C_DIS)?", "", line),
-            (r"stretch_(\d+)\( \)", "", lambda number: found.called.append(int(number))),
+            (r"stretch_(\d+)\( \)", "", found.call),
             (r"BAS\(#(?:INITMOV|TOOL|BASE), \d+\)|\$APO\.CDIS = 0\.5", "", None),
             (r"HALT ;.*|INT percent, i|\$VEL_AXIS\[i\] = percent", "", None),
         ],
@@ -259,21 +258,16 @@ def read_fanuc(text: str) -> Program:
         for number, *own in re.findall(entry, places)
     }
     assert re.fullmatch(rf"(?:{entry})*/END\n", places)
-    found, asked = Program(called=[1]), []
+    found = Program(called=[1])
 
     def start(number: str, low: str, high: str) -> None:
-        asked.append((float(low) + float(high)) / 2)
-        if int(number) == 6:
-            found.starts.append(np.array(asked[-6:]))
-            found.stretches.append([])
+        found.ask(number, repr((float(low) + float(high)) / 2))
 
     def joint(number: str, ms: str) -> None:
-        own = joints[int(number)]
-        found.stretches[-1].append(Go("joint", own, seconds=int(ms) / 1e3))
+        found.go("joint", joints=joints[int(number)], seconds=int(ms) / 1e3)
 
     def line(number: str, feed: str) -> None:
-        own = joints[int(number)]
-        found.stretches[-1].append(Go("linear", own, feed=int(feed) / 1e3))
+        found.go("linear", joints=joints[int(number)], feed=int(feed) / 1e3)
 
     axis = rf"PR\[1,(\d)\]<\(({N})\) OR PR\[1,\d\]>\(({N})\)"
     ended = r"(?:FINE|CNT\d+)"

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import pairwise
 
+import networkx
 import numpy as np
+from joint_paths import walk_round
 from shipped import shipped
 
 import cellcolor
@@ -79,23 +81,11 @@ def _walk(painted: Painted, segment: int) -> list[int]:
     """Vertices round a spanning tree of a segment, the first one at both ends."""
     surface, own = painted.surface, painted.segment_of == segment
     color = painted.plan.vertex_colors[int(np.flatnonzero(own)[0])]
-    around: dict[int, list[int]] = {}
+    graph: networkx.Graph = networkx.Graph()
     for a, b in surface.left_of:
         if own[a] and own[b] and color not in surface.cracked(a, b):
-            around.setdefault(a, []).append(b)
-            around.setdefault(b, []).append(a)
-    start = min(around)
-    walk, seen, stack = [start], {start}, [start]
-    while stack:
-        fresh = [other for other in around[stack[-1]] if other not in seen]
-        if fresh:
-            stack.append(fresh[0])
-            seen.add(fresh[0])
-        else:
-            stack.pop()
-        if stack:
-            walk.append(stack[-1])
-    return walk
+            graph.add_edge(a, b)
+    return walk_round(graph, min(graph))
 
 
 def _path(painted: Painted, normals: Array, segment: int, walk: list[int]) -> ToolPath:

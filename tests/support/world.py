@@ -5,6 +5,7 @@ One obstacle of each kind in the way of an arm, and the same in coal.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import coal
@@ -15,8 +16,10 @@ from cellcolor.arrays import Array
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.obstacle import (
     BoxGridObstacle,
+    BoxObstacle,
     CapsuleObstacle,
     ConeObstacle,
+    CylinderObstacle,
     HalfSpaceObstacle,
     Obstacle,
 )
@@ -107,6 +110,29 @@ PAIRS = {frozenset((a, b)) for a in LINKS for b in LINKS if a < b and {a, b} not
 KINDS = ("cone", "capsule", "half-space", "box-grid")
 
 
+def in_coal(
+    obstacle: Obstacle, cells: Sequence[tuple[int, ...]] = ()
+) -> list[tuple[coal.ShapeBase, coal.Transform3s]]:
+    """Coal's shapes of an obstacle and where they stand; a grid has these cells."""
+    turn, place = rotation_from_rpy(*obstacle.rpy_rad), np.array(obstacle.position_m)
+    if isinstance(obstacle, BoxGridObstacle):
+        box = coal.Box(*[obstacle.cell_m] * 3)
+        middles = [place + turn @ (np.add(cell, 0.5) * obstacle.cell_m) for cell in cells]
+        return [(box, coal.Transform3s(turn, middle)) for middle in middles]
+    if isinstance(obstacle, BoxObstacle):
+        shape = coal.Box(*obstacle.size_m)
+    elif isinstance(obstacle, ConeObstacle):
+        shape = coal.Cone(obstacle.radius_m, obstacle.height_m)
+    elif isinstance(obstacle, CapsuleObstacle):
+        shape = coal.Capsule(obstacle.radius_m, obstacle.axis_m)
+    elif isinstance(obstacle, CylinderObstacle):
+        shape = coal.Cylinder(obstacle.radius_m, obstacle.height_m)
+    else:
+        assert isinstance(obstacle, HalfSpaceObstacle)
+        shape = coal.Halfspace(np.array([0.0, 0.0, 1.0]), 0.0)
+    return [(shape, coal.Transform3s(turn, place))]
+
+
 def standing(
     kind: str, place: Array, folder: Path
 ) -> tuple[Obstacle, list[tuple[coal.ShapeBase, coal.Transform3s]]]:
@@ -116,25 +142,14 @@ def standing(
         folder: for the file of a grid, and what its name is relative to.
     """
     where = {"position_m": tuple(place.tolist()), "rpy_rad": (0.3, -0.4, 0.5)}
-    pose = coal.Transform3s(rotation_from_rpy(0.3, -0.4, 0.5), place)
-    if kind == "cone":
-        return ConeObstacle(radius_m=0.1, height_m=0.2, **where), [(coal.Cone(0.1, 0.2), pose)]
-    if kind == "capsule":
-        capsule = CapsuleObstacle(radius_m=0.04, axis_m=0.2, **where)
-        return capsule, [(coal.Capsule(0.04, 0.2), pose)]
-    if kind == "half-space":
-        wall = {"position_m": where["position_m"], "rpy_rad": (0.0, -1.4, 0.0)}
-        pose = coal.Transform3s(rotation_from_rpy(0.0, -1.4, 0.0), place)
-        return HalfSpaceObstacle(**wall), [(coal.Halfspace(np.array([0.0, 0.0, 1.0]), 0.0), pose)]
     cells = [(i, j, k) for i in range(4) for j in range(3) for k in range(2) if i + j + k != 2]
-    (folder / "map.csv").write_text("\n".join(",".join(map(str, cell)) for cell in cells))
-    grid = BoxGridObstacle(file=str(folder / "map.csv"), cell_m=0.05, **where)
-    turn = rotation_from_rpy(0.3, -0.4, 0.5)
-    boxes = [
-        (
-            coal.Box(0.05, 0.05, 0.05),
-            coal.Transform3s(turn, place + turn @ (np.add(cell, 0.5) * 0.05)),
-        )
-        for cell in cells
-    ]
-    return grid, boxes
+    if kind == "cone":
+        obstacle: Obstacle = ConeObstacle(radius_m=0.1, height_m=0.2, **where)
+    elif kind == "capsule":
+        obstacle = CapsuleObstacle(radius_m=0.04, axis_m=0.2, **where)
+    elif kind == "half-space":
+        obstacle = HalfSpaceObstacle(**where | {"rpy_rad": (0.0, -1.4, 0.0)})
+    else:
+        (folder / "map.csv").write_text("\n".join(",".join(map(str, cell)) for cell in cells))
+        obstacle = BoxGridObstacle(file=str(folder / "map.csv"), cell_m=0.05, **where)
+    return obstacle, in_coal(obstacle, cells)

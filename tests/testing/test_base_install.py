@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import subprocess
@@ -26,7 +25,7 @@ class Environment:
         self.folder = place / "empty"
         self._programs = place / "env" / ("Scripts" if sys.platform == "win32" else "bin")
 
-    def run(self, program: str, *arguments: str, given: str = "") -> tuple[int, str, str]:
+    def run(self, program: str, *arguments: str) -> tuple[int, str, str]:
         """Exit code, standard output and standard error of a program of the environment."""
         kept = {name: text for name, text in os.environ.items() if not name.startswith("PYTHON")}
         command = [str(self._programs / program), *arguments]
@@ -34,7 +33,6 @@ class Environment:
             command,
             cwd=self.folder,
             env=kept,
-            input=given,
             capture_output=True,
             text=True,
             check=False,
@@ -98,19 +96,3 @@ def test_the_plugin(base: Environment) -> None:
     assert code == 1 and "1 failed, 1 passed" in out, out
     assert re.search(r"\d fewer (is|are) proved to be enough; segments \d+ and \d+", out), out
     assert " picture: " in out and " better: " in out  # which need no extra
-
-
-def test_check(base: Environment) -> None:
-    plan = base.python(
-        "import cellcolor\n"
-        "surface = cellcolor.read('half_pipe.surface.json')\n"
-        f"print(cellcolor.Plan({FIRST_COLORS}).to_json())\n"
-    )
-    check = ("check", "half_pipe.surface.json", "-", "--json", "--require-optimal")
-    kept = ("--cache", "proofs")
-    code, out, err = base.run("cellcolor", *check, *kept, given=plan)
-    assert code == 1 and json.loads(out)["beatable_by"] > 0, err
-    colors = json.loads(out)["improvement"]["vertex_colors"]
-    better = json.dumps({"format": "cellcolor/plan", "version": 1, "vertex_colors": colors})
-    code, out, err = base.run("cellcolor", *check, *kept, given=better)
-    assert (code, json.loads(out)["optimal"]) == (0, True), err

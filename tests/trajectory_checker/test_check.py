@@ -222,6 +222,7 @@ def test_without_times_only_geometry_is_judged() -> None:
     assert verdict.notes == ("There are no times, so velocities and accelerations are not judged.",)
 
 
+@pytest.mark.second
 def test_declared_limits() -> None:
     """Each is a fault only if the limit says so."""
     trajectory = rasters.cap()[2]

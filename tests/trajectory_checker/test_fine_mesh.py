@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER
@@ -78,16 +77,6 @@ def test_nearest_points_are_the_nearest() -> None:
     for point, distance in zip(points, found, strict=True):
         brute = brute_nearest(fine, point)
         assert brute - 4e-4 <= distance <= brute + 1e-12
-
-
-def test_points_far_from_the_surface_take_no_more_time() -> None:
-    """Joints in exchanged columns put the tip anywhere; nearly the nearest point will do there."""
-    fine = refined(bumpy(2), 0.002, NEVER)
-    points = np.random.default_rng(0).normal(0, 1, (5_000, 3))
-    located = fine.locate(points, np.tile([0.0, 0.0, 1.0], (5_000, 1)))
-    apart = np.linalg.norm(located.points - points, axis=1)
-    nearest, _ = cKDTree(fine.vertices).query(points)
-    assert np.all(apart < nearest + 0.005)
 
 
 def test_an_upright_tool_is_where_its_tip_is() -> None:

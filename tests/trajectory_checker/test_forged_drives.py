@@ -65,10 +65,10 @@ def test_forged_drives_are_refused(name: str) -> None:
 @pytest.mark.parametrize("name", FORGERS)
 def test_forged_plans_are_refused(name: str) -> None:
     made = planned("wok_obstacle", 1000)
-    honest = Honest(made.prepared, made.plan.trajectory, made.lift_offs)
+    honest = Honest(made.built.prepared, made.trajectory, made.solution.lift_offs)
     for seed in range(3):
         forged = FORGERS[name](honest, np.random.default_rng(seed))
-        verdict = check_trajectory(made.built, forged, minimum_lift_offs=made.lift_offs)
+        verdict = check_trajectory(made.built, forged, minimum_lift_offs=made.solution.lift_offs)
         assert not verdict.valid, seed
 
 

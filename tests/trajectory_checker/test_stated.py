@@ -13,7 +13,6 @@ import rasters
 from forged_drives import FORGERS
 from honest_drives import Honest
 
-from cellcolor.data.candidate_table import VALID
 from cellcolor.data.trajectory import (
     ExtraLiftOff,
     LeftOut,
@@ -22,15 +21,10 @@ from cellcolor.data.trajectory import (
     read_trajectory_csv,
 )
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
-from cellcolor.deadline import NEVER
 from cellcolor.exports.joint_files import joints_csv
 from cellcolor.frontend.prepared import prepare
 from cellcolor.trajectory_checker.check import check_trajectory
-from cellcolor.trajectory_checker.contact import Contact
-from cellcolor.trajectory_checker.covered import failing_places
-from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList
-from cellcolor.trajectory_checker.fine_mesh import refined
 from cellcolor.trajectory_checker.stated import completed, judge_lift_offs
 from cellcolor.trajectory_checker.tolerances import Limits
 
@@ -106,6 +100,7 @@ def test_a_repeated_stretch_may_be_stated() -> None:
     assert rest.last_sample == fault.last_sample
 
 
+@pytest.mark.second
 def test_a_table_says_what_the_trajectory_states(tmp_path: Path) -> None:
     """A stretch twice is valid where it is stated; so it is in the table of the same motion."""
     prepared, again = rasters.cap()[0], driven_twice()
@@ -148,24 +143,3 @@ def test_a_whole_segment_left_out_allows_one_fewer(segments: tuple[int, ...], fa
     found = FaultList(drive, timed=True)
     judge_lift_offs(replace(drive, left_out=left_out, extra_lift_offs=()), 2, found)
     assert found.counts["lift-offs"] == faults
-
-
-def test_stated_places_fail_where_the_branches_of_their_segment_do() -> None:
-    """At the vertices the build knows: in the branch driven, and in any if none is."""
-    prepared, built, drive = rasters.cap()
-    surface = prepared.surface
-    valid = built.reasons == VALID
-    branch = int(np.argmax(valid.any(axis=0) & ~valid.all(axis=0)))
-    places = [tuple(place) for place in surface.vertices.tolist()]
-    parts = [LeftOut(segment, 0.0, "reach", place) for segment in (0, 1) for place in places]
-    stated = replace(drive, left_out=tuple(parts))
-    fine = refined(surface, 1.0, NEVER)
-    at, none = fine.locate(surface.vertices[:1], surface.normals[:1]), np.zeros((1, 3))
-    dense = Dense(
-        np.zeros(1, int), np.zeros(1), none, none, none, np.ones(1, bool), np.zeros(1, int)
-    )
-    driven = Contact(dense, np.array([0]), at, np.array([0]), none, np.array([branch]))
-    failing = failing_places(prepared, stated, driven, fine, NEVER)
-    assert (failing[: len(places)] == ~valid[:, branch]).all()
-    assert (failing[len(places) :] == ~valid.any(axis=1)).all()
-    assert 0 < failing[: len(places)].sum() < len(places)

@@ -20,13 +20,7 @@ import pinocchio as pin
 from cellcolor.arrays import Array
 from cellcolor.data.wording import looks_like_degrees
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.urdf import (
-    PRISMATIC,
-    Urdf,
-    axis_of,
-    inertial_fault,
-    limits_of,
-)
+from cellcolor.frontend.arm.urdf import PRISMATIC, Urdf, axis_of, inertial_fault, limits_of
 
 _FLANGES = ("tool0", "flange", "ee_link", "tool_flange", "wrist_3_link", "link_6")  # of vendors
 

@@ -37,11 +37,7 @@ from cellcolor.frontend.arm.kinematics import (
     task_jacobian,
     tip_jacobian,
 )
-from cellcolor.frontend.arm.newton import (
-    SAME,
-    Polished,
-    nearest,
-)
+from cellcolor.frontend.arm.newton import SAME, Polished, nearest
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import BRANCHES, Signs
 from cellcolor.memory import chunks

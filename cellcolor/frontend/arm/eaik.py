@@ -25,12 +25,7 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.calibrated import (
-    CALIBRATION,
-    Axes,
-    NearIdeal,
-    idealized,
-)
+from cellcolor.frontend.arm.calibrated import CALIBRATION, Axes, NearIdeal, idealized
 from cellcolor.frontend.arm.inverse import (
     InverseKinematics,
     check_lever,
@@ -106,7 +101,6 @@ class EaikKinematics(InverseKinematics):
         return self._solution.solve(points, directions, branches)
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
-        """How a calibrated arm is solved, and what is missing."""
         if not isinstance(self._solution, NearIdeal):
             return ()
         return self._solution.remarks(self.solve(points, directions))

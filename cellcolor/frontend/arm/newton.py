@@ -14,12 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, Mask
-from cellcolor.frontend.arm.kinematics import (
-    TASK_JOINTS,
-    Poses,
-    forward,
-    task_jacobian,
-)
+from cellcolor.frontend.arm.kinematics import TASK_JOINTS, Poses, forward, task_jacobian
 from cellcolor.frontend.arm.robot import Robot, TaskSpace
 from cellcolor.frontend.arm.signs import BRANCHES, Signs
 from cellcolor.memory import chunks

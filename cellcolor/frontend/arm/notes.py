@@ -17,7 +17,7 @@ import numpy as np
 import pinocchio as pin
 import trimesh
 
-from cellcolor.arrays import Array, Mask
+from cellcolor.arrays import Array
 from cellcolor.data.wording import looks_like_millimeters
 from cellcolor.frontend.arm.body import Body, StandIn
 from cellcolor.frontend.arm.kinematics import Poses, forward, nearest_points
@@ -150,19 +150,14 @@ def _in_words(size: float, length: float) -> str:
 def _axes_of(robot: Robot, poses: Poses) -> tuple[Array, float]:
     """A point on each axis and the tip, and the arm's length: the way from axis to axis, m.
 
-    Wherever on the axes the frames are.
+    Each point (joints + 1, 3) is the nearest to the one before, wherever on the axis the frame is.
     """
-    places = _on_axes(poses.origin[0, 1:], poses.axis[0], robot.slides, poses.tip[0])
+    origins, on_axes = poses.origin[0, 1:], [poses.origin[0, 1]]
+    for origin, axis, slide in zip(origins[1:], poses.axis[0, 1:], robot.slides[1:], strict=True):
+        along = 0.0 if slide else float((on_axes[-1] - origin) @ axis)
+        on_axes.append(origin + along * axis)
+    places = np.array([*on_axes, poses.tip[0]])
     return places, float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
-
-
-def _on_axes(origins: Array, axes: Array, slides: Mask, tip: Array) -> Array:
-    """A point (joints + 1, 3) on each joint's axis, the nearest to the one before, and the tip."""
-    places = [origins[0]]
-    for origin, axis, slide in zip(origins[1:], axes[1:], slides[1:], strict=True):
-        along = 0.0 if slide else float((places[-1] - origin) @ axis)
-        places.append(origin + along * axis)
-    return np.array([*places, tip])
 
 
 _SAMPLES = 5_000  # of a hull's surface

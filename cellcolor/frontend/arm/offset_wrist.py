@@ -121,7 +121,6 @@ class OffsetWrist(InverseKinematics):
         return found
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
-        """How many solutions are missing at least."""
         return (remark_on_missing(self._robot, self.solve(points, directions)),)
 
     def _polished(self, points: Array, directions: Array, angles: int) -> Array:

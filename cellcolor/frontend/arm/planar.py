@@ -85,10 +85,7 @@ class PlanarTwo(InverseKinematics):
     def solve(
         self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
     ) -> Array:
-        """Only points in the plane have solutions.
-
-        See :meth:`~cellcolor.frontend.arm.inverse.InverseKinematics.solve`.
-        """
+        """Only points in the plane have solutions."""
         place = points @ self._frame
         x, y = (place[:, :2] - self._shoulder).T
         far = self._never(place[:, 2], directions)
@@ -137,10 +134,7 @@ class ScaraWithoutTurn(PlanarTwo):
     def solve(
         self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
     ) -> Array:
-        """Positions of the prismatic joint are in m, whether it gets there or not.
-
-        See :meth:`~cellcolor.frontend.arm.inverse.InverseKinematics.solve`.
-        """
+        """Positions of the prismatic joint are in m, whether it gets there or not."""
         found = super().solve(points, directions, branches)
         heights = points @ -self._tool
         lift = self._along * (heights - self._height)[:, None]

@@ -167,10 +167,7 @@ class TurnedKinematics(InverseKinematics):
     def solve(
         self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
     ) -> Array:
-        """No solution where the rule says nothing.
-
-        See :meth:`~cellcolor.frontend.arm.inverse.InverseKinematics.solve`.
-        """
+        """No solution where the rule says nothing."""
         directions = self.taken(directions)
         count, across = len(points), turn_at(self.turn, points, directions)
         rows = np.flatnonzero(~np.isnan(across[:, 0]))

@@ -22,12 +22,7 @@ from scipy.optimize import minimize_scalar
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.calibrated import (
-    CALIBRATION,
-    Axes,
-    NearIdeal,
-    idealized,
-)
+from cellcolor.frontend.arm.calibrated import CALIBRATION, Axes, NearIdeal, idealized
 from cellcolor.frontend.arm.inverse import (
     MUST_LIE,
     InverseKinematics,
@@ -252,7 +247,7 @@ def solve_inverse(
 
     canonical = np.stack(np.broadcast_arrays(t1, t2, t3, t4, t5), axis=-1)
     canonical = canonical.reshape(len(points), 8 if branches is None else 1, 5)
-    five = _principal((canonical - g.offset) * g.sign)
+    five = np.pi - np.mod(np.pi - (canonical - g.offset) * g.sign, 2 * np.pi)  # (-pi, pi]
     five[np.isnan(five).any(axis=2)] = np.nan
     sixth = np.where(np.isnan(five[:, :, :1]), np.nan, locked_angle)
     return np.concatenate([five, sixth], axis=2)
@@ -266,11 +261,6 @@ def _arccos(cosine: Array, slack: float) -> Array:
     """arccos with NaN out of reach; what exceeds 1 by rounding and slack counts as 1."""
     near = np.abs(cosine) <= 1.0 + _ROUNDING + slack
     return np.arccos(np.where(near, np.clip(cosine, -1.0, 1.0), np.nan))
-
-
-def _principal(angles: Array) -> Array:
-    """The same angles in (-pi, pi]."""
-    return np.pi - np.mod(np.pi - angles, 2 * np.pi)
 
 
 _SLACK = 0.05  # how much a cosine may exceed 1 where the ideal arm just fails to reach
@@ -300,13 +290,11 @@ class UrKinematics(InverseKinematics):
     def solve(
         self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
     ) -> Array:
-        """See :func:`~cellcolor.frontend.arm.ur.solve_inverse`."""
         if self._near is None:
             return solve_inverse(self.geometry, points, directions, self._locked, branches)
         return self._near.solve(points, directions, branches)
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
-        """How a calibrated arm is solved, and what is missing."""
         return () if self._near is None else self._near.remarks(self.solve(points, directions))
 
 

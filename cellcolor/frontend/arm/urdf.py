@@ -216,7 +216,11 @@ def parse_urdf(text: str, file: Path, folder: Path = Path()) -> Urdf:
             if kind != "fixed":
                 kinds[name] = kind
                 if (mimic := joint.find("mimic")) is not None:
-                    followers[name] = _follower(f"joint[{name}].mimic", mimic)
+                    factor, offset = (
+                        _finite(f"joint[{name}].mimic.{key}", mimic.get(key, usual))
+                        for key, usual in (("multiplier", "1"), ("offset", "0"))
+                    )
+                    followers[name] = Follower(mimic.get("joint", ""), factor, offset)
         roots = [link for link in links if link not in parent]
         if len(roots) != 1:
             raise InputError(None, "robot", f"needs one root link, has {len(roots)}: {roots}")
@@ -251,14 +255,6 @@ def _end(name: str, joint: ET.Element, end: str, links: Collection[str]) -> str:
     if link not in links:
         raise InputError(None, f"joint[{name}].{end}", f"no link {link!r}")
     return str(link)
-
-
-def _follower(field: str, mimic: ET.Element) -> Follower:
-    factor, offset = (
-        _finite(f"{field}.{key}", mimic.get(key, usual))
-        for key, usual in (("multiplier", "1"), ("offset", "0"))
-    )
-    return Follower(mimic.get("joint", ""), factor, offset)
 
 
 def _kind(name: str, joint: ET.Element) -> str:

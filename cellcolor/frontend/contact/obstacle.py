@@ -70,7 +70,6 @@ class MeshObstacle(Obstacle):
     meters_per_unit: Positive
 
     def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shell:
-        """The file's mesh."""
         mesh = load_mesh(folder / self.file, self.meters_per_unit, deadline=deadline)
         return mesh.vertices, mesh.faces
 
@@ -98,7 +97,6 @@ class Primitive(Obstacle):
         return np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)
 
     def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shape:  # noqa: ARG002
-        """The filled shape."""
         return self.standing(Shape(self.kind, self._sizes))
 
 
@@ -154,7 +152,6 @@ class HalfSpaceObstacle(Obstacle):
         return np.column_stack([flat - _DRAWN / 2, np.zeros(len(flat))]), faces
 
     def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shape:  # noqa: ARG002
-        """The whole half space."""
         return self.standing(Shape("half-space"))
 
 
@@ -220,7 +217,6 @@ class BoxGridObstacle(Obstacle):
         return places * self.cell_m, faces.astype(np.int64)
 
     def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shape:
-        """The filled cells."""
         corners = np.asarray(self.cells(folder, deadline) * self.cell_m, dtype=np.float64)
         return self.standing(Shape("cells", (self.cell_m,), vertices=corners))
 

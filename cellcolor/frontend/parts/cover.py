@@ -12,6 +12,7 @@ from typing import Annotated, Self
 import igl
 import numpy as np
 from pydantic import Field, FiniteFloat, field_validator, model_validator
+from trimesh.triangles import closest_point
 
 from cellcolor.arrays import Array, Index, Mask, angles_between
 from cellcolor.data.wording import count
@@ -222,34 +223,21 @@ class Cover(Table):
             inside = (corners >= self.box.low_m) & (corners <= self.box.high_m)
             chosen &= inside.all(axis=(1, 2))
         if self.component is not None:
-            chosen &= self._component(whole)
+            part = whole.mesh.parts()
+            area = np.bincount(part, whole.mesh.areas)
+            if self.component >= len(area):
+                message = f"there is no component {self.component}: the object has {len(area)}"
+                raise InputError(None, "cover.component", message)
+            chosen &= part == np.argsort(-area, kind="stable")[self.component]
         if self.region is not None:
-            chosen &= _grown(whole, self.region)
+            # On the same side of all sharp edges as the face nearest to the seed.
+            corners, seed = whole.vertices[whole.faces], np.array(self.region.seed_m)
+            nearest = closest_point(corners, np.tile(seed, (len(corners), 1)))
+            part = between_sharp(whole.mesh, self.region.sharp_rad)
+            chosen &= part == part[np.argmin(np.linalg.norm(nearest - seed, axis=1))]
         if self.faces_file is not None:
             chosen &= _listed(folder / self.faces_file, len(chosen))
         return chosen
-
-    def _component(self, whole: Surface) -> Mask:
-        part = whole.mesh.parts()
-        area = np.bincount(part, whole.mesh.areas)
-        if self.component is None or self.component >= len(area):
-            message = f"there is no component {self.component}: the object has {len(area)}"
-            raise InputError(None, "cover.component", message)
-        return np.asarray(part == np.argsort(-area, kind="stable")[self.component])
-
-
-def _grown(whole: Surface, region: Region) -> Mask:
-    """The faces on the same side of all sharp edges as the face nearest to the seed."""
-    part = between_sharp(whole.mesh, region.sharp_rad)
-    return np.asarray(part == part[_nearest_face(whole, np.array(region.seed_m))])
-
-
-def _nearest_face(whole: Surface, point: Array) -> int:
-    from trimesh.triangles import closest_point
-
-    triangles = whole.vertices[whole.faces]
-    nearest = closest_point(triangles, np.tile(point, (len(triangles), 1)))
-    return int(np.argmin(np.linalg.norm(nearest - point, axis=1)))
 
 
 def _listed(file: Path, faces: int) -> Mask:

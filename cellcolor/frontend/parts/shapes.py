@@ -21,9 +21,6 @@ class _Sampled(Part):
     jitter: Annotated[FiniteFloat, Field(ge=0, le=0.25)] = 0.0
     seed: Annotated[int, Field(ge=0)] = 0
 
-    def _disc(self) -> tuple[Array, Faces]:
-        return disc_mesh(self.target_vertices, self.jitter, self.seed)
-
     def _grid(self, width: float, height: float) -> tuple[Array, Faces]:
         return grid_mesh(width, height, self.target_vertices, self.jitter, self.seed)
 
@@ -37,7 +34,8 @@ class CapObject(_Sampled):
 
     def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:  # noqa: ARG002
         """The cap as rings of vertices about its pole."""
-        return spherical_cap(self.radius_m, self.half_angle_rad, *self._disc())
+        disc = disc_mesh(self.target_vertices, self.jitter, self.seed)
+        return spherical_cap(self.radius_m, self.half_angle_rad, *disc)
 
 
 class PipeObject(_Sampled):

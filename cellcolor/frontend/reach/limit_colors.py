@@ -61,10 +61,7 @@ def limit_colors(
         configurations: (n, branches, joints) in rad.
         edges: (k, 2) all mesh edges.
     """
-    names: list[str] = []
-    base: list[int] = []
-    members: list[Mask] = []
-    positions: dict[int, Array] = {}
+    found: list[tuple[str, int, Mask, Array | None]] = []  # name, color, members, positions
     winding: list[str] = []
     torn: dict[tuple[int, int], list[int]] = {}
     number: dict[int, int] = {}  # of each color that stays whole
@@ -74,21 +71,16 @@ def limit_colors(
         angles = configurations[:, branch]
         divided = _divided(robot, mask, links, angles)
         if divided is None:
-            number[color] = len(names)
-            names.append(name)
-            base.append(color)
-            members.append(mask)
+            number[color] = len(found)
+            found.append((name, color, mask, None))
             continue
         joints, parts, winds = divided
         if winds:
             winding.append(name)
         inside = edges[mask[edges].all(axis=1)]
         for part in parts:
-            here = len(names)
-            names.append(f"{name} ({_in_words(robot, joints, part.angles[part.mask])})")
-            base.append(color)
-            members.append(part.mask)
-            positions[here] = part.angles
+            here, words = len(found), _in_words(robot, joints, part.angles[part.mask])
+            found.append((f"{name} ({words})", color, part.mask, part.angles))
             whole = {tuple(link) for link in links[part.agrees(links)].tolist()}
             for edge in map(tuple, inside[part.mask[inside].all(axis=1)].tolist()):
                 if edge not in whole:
@@ -97,6 +89,7 @@ def limit_colors(
         kept = [number[color] for color in crack.colors if color in number]
         if kept:
             torn.setdefault((crack.i, crack.j), [])[:0] = kept
+    names = [name for name, _, _, _ in found]
     repeated = {name for name, times in Counter(names).items() if times > 1}
     names = [
         f"{name} {names[: place + 1].count(name)}" if name in repeated else name
@@ -104,7 +97,12 @@ def limit_colors(
     ]
     all_cracks = tuple(Crack(i, j, tuple(sorted(own))) for (i, j), own in sorted(torn.items()))
     return LimitColors(
-        tuple(names), tuple(base), all_cracks, tuple(members), positions, tuple(winding)
+        tuple(names),
+        tuple(color for _, color, _, _ in found),
+        all_cracks,
+        tuple(mask for _, _, mask, _ in found),
+        {here: own for here, (_, _, _, own) in enumerate(found) if own is not None},
+        tuple(winding),
     )
 
 
@@ -161,15 +159,12 @@ def _divided(
     parts.sort(key=lambda part: -int(part.mask.sum()))
     kept: list[_Part] = []
     for part in parts:
-        own_links = links[part.agrees(links)]
-        if not any(_within(part, wider, own_links) for wider in kept):
+        own = links[part.agrees(links)]
+        # A segment in a part that is all in another part, with its links, is one of that as well.
+        wider = (each for each in kept if not (part.mask & ~each.mask).any())
+        if not any(each.agrees(own).all() for each in wider):
             kept.append(part)
     return joints, kept, winds
-
-
-def _within(part: _Part, wider: _Part, links: Index) -> bool:
-    """Whether a segment in a part, whose links are these, is one in another part as well."""
-    return not (part.mask & ~wider.mask).any() and bool(wider.agrees(links).all())
 
 
 def _choices(

@@ -13,7 +13,7 @@ continuous is tested as of named branches, in much shorter steps.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -125,16 +125,10 @@ class _Steps:
 
     def halves(self, middle: Array, joints: Array, determinants: Array) -> _Steps:
         """All first halves, then all second ones."""
-        both = np.concatenate
-        return _Steps(
-            row=both([self.row, self.row]),
-            low=both([self.low, middle]),
-            high=both([middle, self.high]),
-            first=both([self.first, joints]),
-            last=both([joints, self.last]),
-            first_determinant=both([self.first_determinant, determinants]),
-            last_determinant=both([determinants, self.last_determinant]),
-        )
+        before = replace(self, high=middle, last=joints, last_determinant=determinants)
+        after = replace(self, low=middle, first=joints, first_determinant=determinants)
+        both = ([getattr(half, field.name) for half in (before, after)] for field in fields(self))
+        return _Steps(*map(np.concatenate, both))
 
 
 def follow_edges(

@@ -54,13 +54,11 @@ def planar_graph(
         if shared and rng.random() < 0.25:
             kept = tuple(sorted(rng.sample(shared, rng.randrange(len(shared)))))
         made.append(Edge(number, left, right, kept))
+    loops = [(tuple(darts),) if (darts := rotation.darts.get(i)) else () for i in range(cells)]
     return Instance(
         f"planar_{seed}",
         tuple(f"c{color}" for color in range(colors)),
-        tuple(
-            Cell(i, sets[i], (tuple(rotation.darts[i]),) if rotation.darts.get(i) else ())
-            for i in range(cells)
-        ),
+        tuple(Cell(i, sets[i], loops[i]) for i in range(cells)),
         tuple(made),
     )
 

@@ -67,13 +67,10 @@ def markdown_table(head: Sequence[str], body: Iterable[Sequence[str]]) -> Iterat
 
 def _about(rows: Sequence[Row]) -> Iterator[str]:
     """Machine, versions, date and commands."""
-    instances = len({row.sha256 for row in rows})
+    runs = f"{count(len(rows), 'run')} on {count(len({row.sha256 for row in rows}), 'instance')}"
     dates = sorted(row.date for row in rows)
     loads = sorted(row.load for row in rows)
-    yield (
-        f"{count(len(rows), 'run')} on {count(instances, 'instance')}, {dates[0]} to {dates[-1]}, "
-        f"load {loads[0]:.1f} to {loads[-1]:.1f}."
-    )
+    yield f"{runs}, {dates[0]} to {dates[-1]}, load {loads[0]:.1f} to {loads[-1]:.1f}."
     yield ""
     machines = dict.fromkeys(
         f"{row.cpu}, {count(row.cores, 'core')}, {row.memory_mb / 1024:.0f} GiB, Python "
@@ -89,10 +86,8 @@ def _about(rows: Sequence[Row]) -> Iterator[str]:
 def _agreement(rows: Sequence[Row]) -> Iterator[str]:
     wrong = disagreements(rows)
     if not wrong:
-        yield (
-            "No two runs contradict each other. On "
-            f"{count(compared(rows), 'instance')} two solvers or more proved the minimum."
-        )
+        proved = f"{count(compared(rows), 'instance')} two solvers or more proved the minimum"
+        yield f"No two runs contradict each other. On {proved}."
         return
     yield f"**{count(len(wrong), 'contradiction')}:**"
     yield ""
@@ -157,17 +152,11 @@ def _open(rows: Sequence[Row]) -> Iterator[str]:
         if any(row.status == "optimal" for row in own):
             continue
         best = min((r for r in own if r.segments), key=lambda r: r.segments or 0, default=None)
-        most = max(
-            (r for r in own if r.lower_bound), key=lambda r: r.lower_bound or 0, default=None
-        )
-        body.append(
-            [
-                own[0].subject,
-                str(own[0].cells),
-                "" if best is None else f"{best.segments} ({best.contestant})",
-                "" if most is None else f"{most.lower_bound} ({most.contestant})",
-            ]
-        )
+        proved = (r for r in own if r.lower_bound)
+        most = max(proved, key=lambda r: r.lower_bound or 0, default=None)
+        fewest = "" if best is None else f"{best.segments} ({best.contestant})"
+        bound = "" if most is None else f"{most.lower_bound} ({most.contestant})"
+        body.append([own[0].subject, str(own[0].cells), fewest, bound])
     if not body:
         yield "Some solver proved every minimum."
         return

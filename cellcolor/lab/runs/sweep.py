@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from fnmatch import fnmatchcase
@@ -52,13 +52,9 @@ def contestant(text: str) -> Contestant:
     return Contestant(name, workers, solver_version(name))
 
 
-SETS: Mapping[str, Mapping[str, Family]] = {
-    "small": SMALL,
-    "medium": MEDIUM,
-    "large": LARGE,
-    "growing": GROWING,
-}
-"""The families, by the name of their set and their own."""
+_SETS = {"small": SMALL, "medium": MEDIUM, "large": LARGE, "growing": GROWING}
+FAMILIES = {f"{group}/{name}": own for group, all_ in _SETS.items() for name, own in all_.items()}
+"""All families, by the name of their set and their own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,19 +69,18 @@ class Specimen:
 
 def family_names() -> list[str]:
     """All families, as ``set/family``."""
-    return [f"{group}/{name}" for group, families in SETS.items() for name in families]
+    return list(FAMILIES)
 
 
 def families_like(pattern: str) -> list[str]:
     """The families meant by the name of a set, or by ``set/family`` with ``*`` and ``?`` in it."""
-    wanted = f"{pattern}/*" if pattern in SETS else pattern
-    return [name for name in family_names() if fnmatchcase(name, wanted)]
+    wanted = f"{pattern}/*" if pattern in _SETS else pattern
+    return [name for name in FAMILIES if fnmatchcase(name, wanted)]
 
 
 def of_family(name: str, seeds: Iterable[int]) -> list[Specimen]:
     """Instances of a family, such as ``medium/thin``."""
-    group, _, family = name.partition("/")
-    make = partial(_made, SETS[group][family])
+    make = partial(_made, FAMILIES[name])
     return [Specimen(name, seed, f"{name}, seed {seed}", partial(make, seed)) for seed in seeds]
 
 

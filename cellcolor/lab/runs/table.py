@@ -103,15 +103,8 @@ class Row:
     @property
     def key(self) -> Key:
         """Runs with one key are the same run; the machine is not in it."""
-        return (
-            self.sha256,
-            self.search_space,
-            self.solver,
-            self.solver_version,
-            self.workers,
-            self.limit,
-            self.repetition,
-        )
+        contestant = self.solver, self.solver_version, self.workers
+        return (self.sha256, self.search_space, *contestant, self.limit, self.repetition)
 
     @property
     def contestant(self) -> str:
@@ -153,10 +146,8 @@ def disagreements(rows: Iterable[Row]) -> list[str]:
 
 def compared(rows: Iterable[Row]) -> int:
     """On how many instances two solvers or more, whatever their workers, have proved a minimum."""
-    return sum(
-        len({row.solver for row in own if row.status == "optimal"}) > 1
-        for own in _by_instance(rows)
-    )
+    proved = [row for row in rows if row.status == "optimal"]
+    return sum(len({row.solver for row in own}) > 1 for own in _by_instance(proved))
 
 
 def by(rows: Iterable[Row], key: Callable[[Row], _K]) -> dict[_K, list[Row]]:

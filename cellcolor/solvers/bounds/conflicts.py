@@ -41,8 +41,8 @@ class Separation:
 class RegionPair:
     """The surface for two color regions: merged cells with one color, the other or both.
 
-    The two colors differ. Cells of both colors are merged as far as both colors continue. So, apart
-    from cracks, edges remain only between merged cells of one color and merged cells of both.
+    The two colors differ. Apart from cracks, edges remain only between merged cells of one color
+    and merged cells of both.
 
     Attributes:
         first: what segments of the first region do to those of the second; ``second`` the reverse.

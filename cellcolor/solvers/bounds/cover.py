@@ -36,11 +36,9 @@ CERTIFICATE_EFFORT = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Cover:
-    """Color regions that together touch every cell.
+    """The fewest color regions that were found to touch every cell together.
 
-    Attributes:
-        regions: the fewest that were found.
-        bound: no cover has fewer regions, and no division of the surface fewer segments.
+    No cover has fewer than ``bound`` regions, and no division of the surface fewer segments.
     """
 
     regions: list[Region]
@@ -80,8 +78,7 @@ def within(instance: Instance, regions: Iterable[Region]) -> Instance:
 def set_cover(regions: Sequence[Region], deadline: Deadline = NEVER) -> Cover:
     """A smallest set of color regions that touches every cell; its size is a lower bound.
 
-    The regions of all segments together touch every cell, in both search spaces. After the deadline
-    it is the best cover and bound so far.
+    After the deadline it is the best cover and bound so far.
     """
     touching = _touching(regions)
     greedy = _greedy(regions, touching)

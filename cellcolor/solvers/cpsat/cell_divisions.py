@@ -78,11 +78,10 @@ def _blocks(
     members: list[list[int]] = []
 
     def decide(able: tuple[int, ...], last: int) -> Iterator[Blocks]:
-        """Decide the next dart.
+        """Decide the next dart, which ``able`` blocks can get.
 
         Args:
-            able: the blocks that can get it.
-            last: the block of the last one in state 1, -1 for none.
+            last: the block of the last dart in state 1, -1 for none.
         """
         place = len(states)
         if place == len(darts):

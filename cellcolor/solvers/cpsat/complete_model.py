@@ -15,9 +15,9 @@ from cellcolor.data.solution import Division, Seam
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds.cover import color_regions
-from cellcolor.solvers.cpsat.dart_graph import complete_graph, dart_graph, enough_crossings
+from cellcolor.solvers.cpsat.dart_graph import complete_graph, enough_crossings
 from cellcolor.solvers.cpsat.formulation import SectorModel
-from cellcolor.solvers.cpsat.painting import Block, canonical, division_of, moved, painting_of
+from cellcolor.solvers.cpsat.painting import Block, begun, canonical, division_of
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
 from cellcolor.solvers.interruptible import Runner
 
@@ -54,10 +54,8 @@ class CompleteModel(SectorModel):
 
     def begin_with(self, start: Start) -> None:
         """Hint a division, in the place of what is hinted."""
-        graph = dart_graph(self.instance, self._each, start.seams)
-        painting = moved(graph, painting_of(graph, start.division), self.sectors.graph)
         self.model.clear_hints()  # type: ignore[no-untyped-call]
-        self.hint(canonical(self.sectors.graph, painting))
+        self.hint(begun(self.instance, self._each, start, self.sectors.graph))
 
     def read(self, solver: cp_model.CpSolver) -> tuple[Division, tuple[Seam, ...]]:
         """The division that a solver has found, and the seams that its darts refer to."""

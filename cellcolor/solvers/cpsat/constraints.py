@@ -6,7 +6,7 @@ The numbers are those of that page. ``DEFINING`` groups make the model correct a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ortools.sat.python import cp_model
@@ -177,20 +177,14 @@ def zeros(m: SectorModel) -> None:
             m.model.add_implication(m.apart[ring[place - 1]][0], ~m.apart[m.link_at[dart]][0])
 
 
-DEFINING: Mapping[str, Callable[[SectorModel], None]] = {
-    "one color": one_color,
-    "parent or root": parent_or_root,
-    "parent of one color": parent_of_one_color,
-    "no circles": no_circles,
-}
+_Group = Callable[["SectorModel"], None]
 
-REDUNDANT: Mapping[str, Callable[[SectorModel], None]] = {
-    "undivided": undivided,
-    "fixed roots": fixed_roots,
-    "regions in use": regions_in_use,
-    "cover": cover,
-    "company": company,
-    "euler": euler,
-    "connections": connections,
-    "zeros": zeros,
-}
+
+def _named(*groups: _Group) -> dict[str, _Group]:
+    return {group.__name__.replace("_", " "): group for group in groups}
+
+
+DEFINING = _named(one_color, parent_or_root, parent_of_one_color, no_circles)
+REDUNDANT = _named(
+    undivided, fixed_roots, regions_in_use, cover, company, euler, connections, zeros
+)

@@ -54,12 +54,9 @@ with its color and the darts across which it is joined. Other cells are joined f
 
 
 def exact_minimum(instance: Instance, deadline: Deadline) -> Exact | None:
-    """The minimum of a forest or of hubs with one-colored neighbors; None for other parts.
+    """The minimum of a forest, a wheel, or hubs with one-colored neighbors; None for other parts.
 
     No division that crosses each live edge once at most has fewer segments.
-
-    Args:
-        instance: a part, which live edges connect.
     """
     if instance.most_live_loops > 1:
         return None

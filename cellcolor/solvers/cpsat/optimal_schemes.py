@@ -13,7 +13,7 @@ from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.cell_divisions import Blocks, Planarity
 from cellcolor.solvers.cpsat.dart_graph import dart_graph
 from cellcolor.solvers.cpsat.frontier import Frontier
-from cellcolor.solvers.cpsat.painting import Painting, canonical, division_of, moved, painting_of
+from cellcolor.solvers.cpsat.painting import begun, division_of
 from cellcolor.solvers.interface import Options
 
 _COUNTING = 1 / 2
@@ -77,21 +77,12 @@ class OptimalSchemes(Iterator[Division]):
         draw = self._planarity.can_be_drawn
         return Frontier(self._graph, regions, self._segments, draw, deadline, given)
 
-    def _start(self) -> Painting | None:
-        """The scheme of the division to start from."""
-        start = self._options.start
-        if start is None:
-            return None
-        strands = dict.fromkeys(self._instance.live_edges, 1)
-        seamed = dart_graph(self._instance, strands, start.seams)
-        known = painting_of(seamed, start.division)
-        return canonical(self._graph, moved(seamed, known, self._graph))
-
     def _nearby(self) -> Iterator[Division]:
         """Schemes that differ from a known one in a few cells only."""
-        start = self._start()
-        if start is None:
+        if self._options.start is None:
             return
+        once = dict.fromkeys(self._instance.live_edges, 1)
+        start = begun(self._instance, once, self._options.start, self._graph)
         first = division_of(self._graph, start)
         rng, known, seen = Random(self._options.seed), [start], {scheme_key(first)}
         if self._instance.most_live_loops < 2:

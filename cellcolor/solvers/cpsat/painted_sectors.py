@@ -17,8 +17,7 @@ from cellcolor.solvers.cpsat.sectors import SectorGraph
 class PaintedSectors:
     """The nodes of a sector graph, each painted in one of its color regions.
 
-    A region says more than a color: where the color can spread to, and that it is of no use to look
-    for a segment elsewhere.
+    A region says more than a color: where the color can spread to.
 
     Args:
         colors: of each node.

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from cellcolor.data.cells_and_edges import DartName, strand_of
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, number_segments
 from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph
+from cellcolor.solvers.interface import Start
 from cellcolor.union_find import UnionFind
 
 
@@ -73,6 +74,14 @@ def moved(known: DartGraph, painting: Painting, target: DartGraph) -> Painting:
             one.darts |= {target.number_of[name] for name in names if name in target.number_of}
         found.append(list(made.values()))
     return found
+
+
+def begun(
+    instance: Instance, strands: Mapping[int, int], start: Start, target: DartGraph
+) -> Painting:
+    """The scheme of a division with so many strands of each live edge, on another graph."""
+    graph = dart_graph(instance, strands, start.seams)
+    return canonical(target, moved(graph, painting_of(graph, start.division), target))
 
 
 def segments_of(graph: DartGraph, painting: Painting) -> list[set[int]]:
@@ -217,10 +226,9 @@ def joined(
 ) -> Division:
     """The scheme of a division: edges between equal joinable colors are joined.
 
-    A division in which some edge in state 0 has to show one joinable color on both sides is refused
-    by the checker (docs/semantics.md, section 3, rule 5). Joining these edges repairs it. Sub-cells
-    of equal color without anything between them become one, and what is superfluous goes; there
-    are no more segments than before (section 8).
+    A division that leaves such an edge unjoined can be illegal (docs/semantics.md, section 3, rule
+    5). Sub-cells of equal color without anything between them become one, and what is superfluous
+    goes; there are no more segments than before (section 8).
 
     Args:
         division: legal otherwise; cells may be painted whole, without any joined edge.

@@ -74,14 +74,11 @@ class Part:
 
     Attributes:
         cells: the cell of the whole instance that each cell of the part is.
-        regions: the color regions: for each color the sets of cells that it connects.
-        best: the best division, on its dart graph.
-        segments: of the best division.
+        best: the best division, on its dart graph; it has as many segments as ``segments``.
         bound: no division in the search space has fewer segments.
         surface_bound: no division of the surface has fewer.
         by: what proved ``bound``: the kind of bound.
         cover_bound: the size of a smallest cover, or what is proved of it.
-        planner: what plans its segments; None before.
         model_size: how large the complete model is, if it was solved.
         notes: models that were not built, and why, a sentence each.
     """

@@ -1,9 +1,8 @@
 """Rule 5 for a part of the cells: what darts in state 0, zeros, can show towards the others.
 
-Each zero shows one of two colors, that of the sub-cell before it or after it along the border. To
-choose them so that no edge shows one joinable color on both sides is a 2-satisfiability problem.
-When only some cells are painted, all that matters of it is what it says about the zeros towards the
-other cells.
+Each zero shows the color of the sub-cell before it or after it along the border. To choose them so
+that no edge shows one joinable color on both sides is a 2-satisfiability problem. When only some
+cells are painted, all that matters of it is what it says about the zeros towards the other cells.
 """
 
 from __future__ import annotations

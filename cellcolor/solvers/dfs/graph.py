@@ -19,12 +19,7 @@ from cellcolor.data.solution import Seam
 
 @dataclass(frozen=True)
 class GraphCell:
-    """A cell with one cyclic list of live darts.
-
-    Attributes:
-        darts: its live darts in cyclic order.
-        joinable: for each dart, the colors that may continue across it.
-    """
+    """A cell with its live darts in cyclic order, and the colors that may continue across each."""
 
     id: int
     colors: tuple[int, ...]

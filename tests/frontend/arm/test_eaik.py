@@ -93,17 +93,6 @@ def test_an_arm_without_closed_form_is_refused_with_the_way_out() -> None:
     assert "no closed form" in error.message and "own solver" in error.message
 
 
-def test_a_tool_beside_the_last_axis_is_refused() -> None:
-    text = dh_arms.urdf("kr6").replace('<link name="flange"/>', "")
-    text = text.replace('child link="flange"', 'child link="wrist"').replace(
-        "</robot>",
-        '<link name="wrist"/><joint name="bend" type="fixed"><parent link="wrist"/>'
-        '<child link="flange"/><origin xyz="0.01 0 0"/></joint><link name="flange"/></robot>',
-    )
-    error = refused(dh_arms.robot(text))
-    assert error.field == "joint[j6]" and "must lie on this joint's axis" in error.message
-
-
 @pytest.mark.parametrize(
     ("locked", "message"), [(None, "is missing"), (7.0, "outside the limits of the sixth joint")]
 )

@@ -11,8 +11,8 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 from shipped import ROBOTS
+from world import in_coal
 
-from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.robot import Robot
@@ -25,7 +25,7 @@ from cellcolor.frontend.contact.obstacle import (
     Obstacle,
 )
 from cellcolor.frontend.contact.tip import Tip
-from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
+from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import RectangleObject
 from cellcolor.frontend.scene import Ground, Scene
 from cellcolor.frontend.setup import Setup
@@ -49,35 +49,12 @@ def map_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def shapes(obstacle: Obstacle) -> list[tuple[coal.ShapeBase, Array]]:
-    """The same obstacle as shapes of coal, and where their middles are in its own frame."""
-    origin = np.zeros(3)
-    if isinstance(obstacle, ConeObstacle):
-        return [(coal.Cone(obstacle.radius_m, obstacle.height_m), origin)]
-    if isinstance(obstacle, CapsuleObstacle):
-        return [(coal.Capsule(obstacle.radius_m, obstacle.axis_m), origin)]
-    if isinstance(obstacle, BoxObstacle):
-        return [(coal.Box(*obstacle.size_m), origin)]
-    if isinstance(obstacle, HalfSpaceObstacle):
-        return [(coal.Halfspace(np.array([0.0, 0.0, 1.0]), 0.0), origin)]
-    return [(coal.Box(CELL, CELL, CELL), (np.array(cell) + 0.5) * CELL) for cell in CELLS]
-
-
 def distance(obstacle: Obstacle, other: coal.ShapeBase, pose: coal.Transform3s) -> float:
     """Between the obstacle and another shape by coal, m."""
-    turn, place = rotation_from_rpy(*obstacle.rpy_rad), np.array(obstacle.position_m)
+    asked = coal.DistanceRequest()
     return min(
-        float(
-            coal.distance(
-                shape,
-                coal.Transform3s(turn, place + turn @ middle),
-                other,
-                pose,
-                coal.DistanceRequest(),
-                coal.DistanceResult(),
-            )
-        )
-        for shape, middle in shapes(obstacle)
+        float(coal.distance(shape, there, other, pose, asked, coal.DistanceResult()))
+        for shape, there in in_coal(obstacle, CELLS)
     )
 
 

@@ -37,7 +37,7 @@ moves = st.dictionaries(
 )
 
 
-@examples(20)
+@examples(12)
 @given(moves)
 def test_what_folds_in_a_plane_is_flattened(moved: dict[int, tuple[float, float]]) -> None:
     """Inner vertices of a square pushed over their neighbors: then it covers itself no more.

@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from reasons import Reason
-from shipped import SCENES, WOK
+from shipped import SCENES
 
 from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, build_surface
@@ -147,14 +147,3 @@ def test_asked_for_in_the_setup(scene: Callable[..., Scene]) -> None:
     assert len(torn(asked)) > len(torn(trusting)) or len(asked.surface.colors) > len(
         trusting.surface.colors
     )
-
-
-def test_a_branch_followed_alone_is_the_same() -> None:
-    prepared = prepare(WOK)
-    points, directions = prepared.surface.vertices, -prepared.surface.normals
-    branches = np.random.default_rng(2).integers(8, size=len(points))
-    expected = prepared.arm.inverse(points, directions)[np.arange(len(points)), branches]
-    found = prepared.arm.follow(points, directions, branches)
-    np.testing.assert_array_equal(found, expected)
-    assert np.isfinite(found).all(axis=1).mean() > 0.5
-    assert prepared.arm.follow(points[:0], directions[:0], branches[:0]).shape == (0, 6)

@@ -109,13 +109,6 @@ def test_seams_to_several_loops_lose_nothing(shape: tuple[int, ...], colors: lis
     seams_lose_nothing(shape, colors)
 
 
-@pytest.mark.slow
-@examples(6)
-@given(colors=st.lists(st.integers(0, 2), min_size=8, max_size=8))
-def test_seams_to_four_loops_lose_nothing(colors: list[int]) -> None:
-    seams_lose_nothing((2, 2, 2, 2), colors)
-
-
 def seams_lose_nothing(shape: tuple[int, ...], colors: list[int]) -> None:
     """A cell with leaf cells around it and in its holes. Each segment is a sub-cell with leaf cells
     of one color, so the fewest are those of any grouping that can be drawn."""

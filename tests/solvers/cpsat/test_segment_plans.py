@@ -7,15 +7,14 @@ from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
 from ortools.sat.python import cp_model
-from rooms import graph, hub, petal_cells
+from rooms import hub
 
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.lab.families import planar_graph
 from cellcolor.solvers.bounds.cover import color_regions, set_cover
 from cellcolor.solvers.checked import solve
-from cellcolor.solvers.cpsat import segment_plans
-from cellcolor.solvers.cpsat.segment_plans import Planner, SegmentPlan, Undecided
+from cellcolor.solvers.cpsat.segment_plans import Planner, SegmentPlan
 from cellcolor.solvers.interface import Options
 from examples import examples
 
@@ -76,35 +75,6 @@ def test_what_cannot_be_planned_cannot_be_painted(seed: int, cells: int, colors:
     for cell in instance.cells:
         assert sum(cell.id in cells for _, cells in plan) == 1
     assert all(cells <= region[1] for region, cells in plan)
-
-
-def test_with_too_many_separations_a_planner_gives_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Around a hub of two colors in turn."""
-    planner = planner_of(hub(RED, BLUE, RED, BLUE))
-    plan = planner.plan(2, one_worker)
-    assert plan is not None and planner.find_separations(plan, NEVER)
-    with monkeypatch.context() as patch:
-        patch.setattr(segment_plans, "MOST_SEPARATED", 0)
-        with pytest.raises(Undecided):
-            planner.plan(2, one_worker)
-    assert planner.plan(2, one_worker) is None
-
-
-def test_segments_are_told_apart_where_a_plan_has_several(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two hubs side by side: that one of them is too few is seen in a model of one copy each."""
-    one = petal_cells(RED, BLUE, RED, BLUE)
-    other = [((colors[0] + 2,), (loop[0] - 4,)) for colors, loop in one]
-    hubs = ((RED, BLUE), (1, 2, 3, 4)), ((RED + 2, BLUE + 2), (5, 6, 7, 8))
-    planner = planner_of(graph(*hubs, *one, *other))
-    while (plan := planner.plan(4, one_worker)) is not None:
-        assert planner.find_separations(plan, NEVER)
-    size = sum(2 + len(separation.groups) for _, _, separation in planner.separations)
-    with monkeypatch.context() as patch:
-        patch.setattr(segment_plans, "MOST_SEPARATED", size)
-        assert planner.plan(5, one_worker) is None
-        with pytest.raises(Undecided):
-            planner.plan(6, one_worker)
-    assert len(planner.plan(6, one_worker) or ()) == 6
 
 
 def test_no_time() -> None:
