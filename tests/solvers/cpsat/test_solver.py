@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from library import INSTANCES
 
@@ -13,7 +13,7 @@ from cellcolor.checker.division import check_division
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
-from cellcolor.lab.families import blobs, hub, hub_minimum
+from cellcolor.lab.families import blobs, hub, hub_minimum, hub_with_loops
 from cellcolor.lab.families.registry import MEDIUM
 from cellcolor.solvers.bounds.cover import color_regions, set_cover
 from cellcolor.solvers.checked import solve
@@ -84,6 +84,20 @@ def part_of(instance: Instance) -> Part:
     part = Part(*split(instance)[-1], options, Runner(options), lambda: None)
     part.cover(NEVER)
     return part
+
+
+@examples(15)
+@given(seed=SEEDS, petals=st.integers(2, 3))
+@example(seed=0, petals=3)
+def test_plans_that_are_decided_one_by_one_prove_the_minimum(seed: int, petals: int) -> None:
+    """On hubs with two loops, held against the depth-first search, without the whole model."""
+    instance = hub_with_loops(seed, 2, petals, 3)
+    part = part_of(instance)
+    if not part.done:
+        part.separate(4.0, NEVER)
+    assert part.done and part.segments == solve(instance, Options(), "dfs").segments
+    if (seed, petals) == (0, 3):  # no pair of its segments has to cross, but four of them would
+        assert (part.by, part.surface_bound, part.bound) == ("exact", 3, 4)
 
 
 @pytest.mark.parametrize(
