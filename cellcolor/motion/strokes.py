@@ -85,6 +85,11 @@ class Stroke:
         """The same stroke in reverse."""
         return self._taken(slice(None, None, -1))
 
+    def followed_by(self, rows: slice) -> Stroke:
+        """The stroke, and then some of its samples once more."""
+        own = np.arange(len(self))
+        return self._taken(np.concatenate([own, own[rows]]))
+
     def begun_at(self, sample: int, space: JointSpace) -> Stroke:
         """A closed stroke that begins and ends at another of its samples."""
         if sample == 0:

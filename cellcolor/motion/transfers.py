@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cellcolor.arrays import Array, Mask, unit
+from cellcolor.arrays import Array, Index, Mask, unit
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import forward
@@ -19,13 +19,17 @@ from cellcolor.motion.free_space import FreeSpace
 from cellcolor.motion.limits import home_of
 from cellcolor.motion.order import Visit, chosen_turns
 from cellcolor.motion.strokes import Stroke
-from cellcolor.motion.ways import Transfer, Ways
+from cellcolor.motion.ways import FEW, MANY, Transfer, Ways
 
 # Bounds in rad are in units of a slide as well (JointSpace.units).
 _FASTER = 0.3  # rad; from one sample of a retreat to the next a branch that jumps moves farther
 _TILTS = (30.0, 60.0)  # degrees off the normal, of retreats where that along it is blocked
 _AROUND = 6  # of each tilt
 _STARTS = 24  # of a closed stroke that are tried where the arm cannot leave
+_TRIMMED = 0.5  # spacings that an open stroke may lose at an end for that
+_RETRACED = 10.0, 0.15  # spacings, or of a stroke's length, that it may go back over for that
+_ATTEMPTS = 5  # of turns of the strokes, while some move is not planned
+_HOPELESS = 1000.0  # s; added to the time of such a move
 _BLOCKED = 10.0  # s; added to the time of a move for which no simple way is known
 _DEEP = 60.0  # s; and by so much, times the share of it that is not free
 _LONGER = 10.0  # times the time of a straight move that is blocked; so few turns are preferred
@@ -34,6 +38,7 @@ _ROOM = 0.999  # of the largest steps, for rounding
 _LEAVING = 0.0025  # m; for so long the tip of a tool that leaves may be near; the judge has 3 mm
 _UP = np.array([0.0, 0.0, 1.0])  # however the ball at the tip is turned
 _TIP = Body("tool tip", 1, np.zeros(3), np.zeros(3), 0.0011, False)  # as near; the judge has 1 mm
+_DIGITS = 9  # of joints in rad or m, by which moves are told apart
 
 
 @dataclass(frozen=True)
@@ -48,6 +53,26 @@ class _Reachable:
     stroke: Stroke
     onto: Array
     off: Array
+
+
+@dataclass(frozen=True)
+class _Attempt:
+    """Strokes turned by full circles, and the moves without contact before, between and after them.
+
+    Attributes:
+        circles: of each stroke, the full circles (joints,) that it is turned by.
+        retreats: of each move, those (k, joints) that it begins and ends with.
+    """
+
+    circles: Sequence[Index]
+    strokes: list[Stroke]
+    retreats: list[tuple[Array, Array]]
+    transfers: list[Transfer]
+
+    @property
+    def gaps(self) -> list[int]:
+        """The numbers of the moves that were not planned."""
+        return [at for at, one in enumerate(self.transfers) if one.gap is not None]
 
 
 class Transfers:
@@ -77,28 +102,39 @@ class Transfers:
             self._at_home = self.home[None]
         self._ways = Ways(prepared, motion, velocities, self.home, seed, deadline)
         self._space = self._ways.space
-        # By both ends, how much of a straight move is blocked.
+        # By both ends (`_key`): what share of a straight move is blocked; moves without a way.
         self._shares: dict[bytes, float] = {}
+        self._hopeless: set[bytes] = set()
 
     def between_strokes(self, strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Transfer]]:
         """The strokes with their ends and turns chosen, and all motions without contact.
 
         These are the way to the first stroke, those between strokes, and the way from the last
         one. Without a home position the first begins, and the last ends, where the tool is
-        retracted.
+        retracted. Turns are chosen again while some move has no way: others may be as quick. The
+        moves that are left then are planned once more with more effort.
         """
         reachable = [self._led(self._reachable(stroke)) for stroke in strokes]
         visits = [self._visit(one) for one in reachable]
-        circles = chosen_turns(visits, self.home, self._space, self._velocities, self._detour)
-        turned, onto, off = [], [], []
-        for one, own in zip(reachable, circles, strict=True):
-            turned.append(one.stroke.turned(own, self._space))
-            onto.append(self._within_limits(one.onto + self._space.period * own))
-            off.append(self._within_limits(one.off + self._space.period * own))
-        ends = zip([*onto, *off], [*turned, *turned], strict=True)
-        self._ways.pass_near([(way[-1], stroke.branch) for way, stroke in ends])
-        moves = zip([self._at_home, *off], [*onto, self._at_home], strict=True)
-        return turned, [self._joined(*move) for move in moves]
+        tried: list[_Attempt] = []
+        for _ in range(_ATTEMPTS):
+            circles = chosen_turns(visits, self.home, self._space, self._velocities, self._detour)
+            if any(np.array_equal(circles, before.circles) for before in tried):
+                break
+            tried.append(self._attempt(reachable, circles))
+            if not tried[-1].gaps:
+                break
+            shifts = [self._space.period * own for own in circles]
+            begins = [one.start + shift for one, shift in zip(visits, shifts, strict=True)]
+            ends = [one.end + shift for one, shift in zip(visits, shifts, strict=True)]
+            begins, ends = [*begins, self._at_home.ravel()], [self._at_home.ravel(), *ends]
+            self._hopeless |= {self._key(ends[gap], begins[gap]) for gap in tried[-1].gaps}
+        best = min(tried, key=lambda one: len(one.gaps))
+        transfers = list(best.transfers)
+        for gap in best.gaps:
+            drawn = max(FEW, MANY // len(best.gaps))
+            transfers[gap] = self._joined(*best.retreats[gap], drawn)
+        return best.strokes, transfers
 
     def _visit(self, one: _Reachable) -> Visit:
         """What has to fit into the limits: the retreats too, if full circles can bring them in."""
@@ -107,17 +143,38 @@ class Transfers:
             span = one.stroke.whole
         return Visit(one.onto[-1], one.off[-1], span)
 
+    def _attempt(self, reachable: Sequence[_Reachable], circles: Sequence[Index]) -> _Attempt:
+        """The strokes turned by these full circles, and the moves between them."""
+        strokes, onto, off = [], [], []
+        for one, own in zip(reachable, circles, strict=True):
+            strokes.append(one.stroke.turned(own, self._space))
+            onto.append(self._within_limits(one.onto + self._space.period * own))
+            off.append(self._within_limits(one.off + self._space.period * own))
+        ends = zip([*onto, *off], [*strokes, *strokes], strict=True)
+        self._ways.pass_near([(way[-1], stroke.branch) for way, stroke in ends])
+        retreats = list(zip([self._at_home, *off], [*onto, self._at_home], strict=True))
+        return _Attempt(circles, strokes, retreats, [self._joined(*pair) for pair in retreats])
+
     def _reachable(self, stroke: Stroke) -> _Reachable:
         """A stroke that begins and ends where the arm can leave it, with both retreats.
 
         A closed one begins where a straight joint move leads home as well, if it does anywhere, so
-        that there is a way to every other stroke.
+        that there is a way to every other stroke. An open one loses a little at the end, or goes
+        back over itself as far as to a place that the arm can leave; if there is none, it stays as
+        it is.
         """
         if stroke.is_closed(self._space) and (begun := self._begun_elsewhere(stroke)) is not None:
             stroke, onto = begun
             wound = self._space.period * self._space.periods(stroke.joints[-1] - onto[0])
             return _Reachable(stroke, onto, onto + wound)
-        return _Reachable(stroke, self._retreat_at(stroke, 0), self._retreat_at(stroke, -1))
+        onto = self._retreat_at(stroke, 0)
+        if len(onto) == 1:
+            stroke, onto = self._ended_elsewhere(stroke.reversed())
+            stroke = stroke.reversed()
+        off = self._retreat_at(stroke, -1)
+        if len(off) == 1:
+            stroke, off = self._ended_elsewhere(stroke)
+        return _Reachable(stroke, onto, off)
 
     def _led(self, one: _Reachable) -> _Reachable:
         """The same with leads straight on from both ends, as far as the arm is free there.
@@ -161,6 +218,30 @@ class Transfers:
                 if not found[-1][0]:
                     break
         return min(found, key=lambda one: one[0])[1:] if found else None
+
+    def _ended_elsewhere(self, stroke: Stroke) -> tuple[Stroke, Array]:
+        """An open stroke that ends where the arm can leave it, and the retreat from there.
+
+        It is shortened by as little as will do, or goes back over itself. If nothing helps, it
+        stays as it is, and the retreat is its last configuration alone.
+        """
+        spacing = self._motion.spacing_m
+        steps = np.linalg.norm(np.diff(stroke.points[::-1], axis=0), axis=1)
+        back = np.concatenate([[0.0], np.cumsum(steps)])  # from the end on
+        most = max(_RETRACED[0] * spacing, _RETRACED[1] * back[-1])
+        for far in np.arange(0.25, most / spacing, 0.5) * spacing:
+            if far >= back[-1]:
+                break
+            self._deadline.check()
+            at = len(stroke) - 1 - int(np.searchsorted(back, far))
+            off = self._retreat_at(stroke, at)
+            if len(off) == 1 or at < 1:
+                continue
+            if far <= _TRIMMED * spacing:
+                return stroke.part(0, at + 1), off
+            again = slice(len(stroke) - 2, at - 1 if at else None, -1)
+            return stroke.followed_by(again), off
+        return stroke, stroke.joints[-1:]
 
     def _retreat_at(self, stroke: Stroke, at: int) -> Array:
         """The retreat from a sample of a stroke."""
@@ -237,7 +318,7 @@ class Transfers:
             return way
         return self._cut(way[: max(1, int(np.argmin(inside)))])
 
-    def _joined(self, off: Array, onto: Array) -> Transfer:
+    def _joined(self, off: Array, onto: Array, drawn: int = FEW) -> Transfer:
         """Along one retreat, freely to the end of another one, and back along that.
 
         Of the first and the last move without a home only the one retreat.
@@ -246,14 +327,19 @@ class Transfers:
             return Transfer(np.concatenate([off, onto[::-1]]))
         if len(off) == 1 and len(onto) == 1:
             off = np.concatenate([off, off])  # so that there is a sample without contact
-        between = self._ways.between(off[-1], onto[-1])
+        between = self._ways.between(off[-1], onto[-1], drawn)
         joints = np.concatenate([off[:-1], between.joints, onto[:-1][::-1]])
         gap = None if between.gap is None else len(off) - 1 + between.gap
         return Transfer(joints, gap, between.blocked)
 
+    def _key(self, start: Array, end: Array) -> bytes:
+        """Of a move; of two that are full circles apart as a whole it is the same."""
+        circles = self._space.period * self._space.periods(start)
+        return np.round(np.concatenate([start - circles, end - circles]), _DIGITS).tobytes()
+
     def _blocked(self, start: Array, end: Array) -> float:
         """What share of the samples of a straight move is not free, computed once."""
-        key = np.concatenate([start, end]).tobytes()
+        key = self._key(start, end)
         if key not in self._shares:
             self._deadline.check()
             self._shares[key] = self._ways.share(start, end)
@@ -268,6 +354,8 @@ class Transfers:
 
     def _detour(self, start: Array, end: Array) -> float:
         """How much longer than a straight move the way will probably take, s; 0 if that is free."""
+        if self._key(start, end) in self._hopeless:
+            return _HOPELESS
         share = self._blocked(start, end)
         if share == 0.0:
             return 0.0

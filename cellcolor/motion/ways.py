@@ -20,6 +20,8 @@ from cellcolor.motion.free_space import FreeSpace
 
 # Bounds in rad are in units of a slide as well (JointSpace.units).
 _SHARES = (1.0, 0.4, 0.1)  # of the clearance that the ends of a way keep, the most that they can
+FEW, MANY = 250, 2_000
+"""Configurations drawn for one move: seconds, or half a minute."""
 _ROOM = 0.999  # of the largest steps, for rounding
 _COARSE = 0.04  # rad, between samples of a move that is only tried
 _DRAWN, _STOPS = 256, 40  # configurations drawn for a map of free ones, and kept in it
@@ -88,11 +90,12 @@ class Ways:
         each = (level for level, free in enumerate(self.levels) if free.clear(joints[None])[0])
         return next(each, len(_SHARES))
 
-    def between(self, start: Array, end: Array) -> Transfer:
+    def between(self, start: Array, end: Array, drawn: int) -> Transfer:
         """Straight for the joints, or over free configurations, or not at all.
 
         Args:
             start, end: (joints,) both inside the limits.
+            drawn: configurations, to be led over where the known stops do not do.
         """
         levels = self.level(start), self.level(end)
         if max(levels) == len(_SHARES):
@@ -100,9 +103,13 @@ class Ways:
             return Transfer(np.array([start, end]), 0, self._bodies(where[None]))
         near = self.levels[max(levels)]
         for over in (self._clear, near) if max(levels) else (self._clear,):
-            found = self._over_stops(start, end, self._ramped(over, near, start, end))
-            if found is not None:
-                return Transfer(found)
+            free = self._ramped(over, near, start, end)
+            roomy = self._wide if over is self._clear else over
+            for more in (0, drawn):
+                stops = [*self._stops, *self._drawn([start, end], more, roomy)]
+                found = self._over_stops(start, end, stops, free)
+                if found is not None:
+                    return Transfer(found)
         straight = self._dense(np.array([start, end]))
         return Transfer(np.array([start, end]), 0, self._bodies(straight[~self._clear(straight)]))
 
@@ -146,17 +153,23 @@ class Ways:
         return np.asarray(found[self._clear(found)])
 
     def _free_stops(self, ends: Sequence[Array]) -> list[Array]:
-        """Free configurations that ways may lead over: home, and some drawn about strokes' ends."""
-        stops, space = [] if self._home is None else [self._home], self.space
-        places = np.array([*ends, *stops])
+        """Free configurations that ways may lead over: home, and some about the strokes' ends."""
+        stops = [] if self._home is None else [self._home]
+        return stops + self._drawn([*ends, *stops], _DRAWN, self._wide)[:_STOPS]
+
+    def _drawn(self, around: Sequence[Array], count: int, free: FreeSpace) -> list[Array]:
+        """The free ones of some configurations drawn around others."""
+        space, places = self.space, np.array(around)
         low = np.maximum(places.min(axis=0) - _WIDER * space.units, space.lower)
         high = np.minimum(places.max(axis=0) + _WIDER * space.units, space.upper)
-        drawn = np.random.default_rng(self._seed).uniform(low, high, (_DRAWN, len(low)))
-        return [*stops, *drawn[self._wide(drawn)][:_STOPS]]
+        drawn = np.random.default_rng(self._seed).uniform(low, high, (count, len(low)))
+        return list(drawn[free(drawn)])
 
-    def _over_stops(self, start: Array, end: Array, free: Callable[[Array], Mask]) -> Array | None:
-        """The quickest way over the stops whose straight moves are free, sampled; None without."""
-        nodes = np.array([start, end, *self._stops])
+    def _over_stops(
+        self, start: Array, end: Array, stops: Sequence[Array], free: Callable[[Array], Mask]
+    ) -> Array | None:
+        """The quickest way over stops whose straight moves are free, sampled; None without one."""
+        nodes = np.array([start, end, *stops])
         seconds = (np.abs(nodes[:, None] - nodes[None]) / self._velocities).max(axis=2)
         tested: dict[tuple[int, int], Array] = {}
 
