@@ -103,7 +103,11 @@ def dart_graph(
 
 
 def widened(
-    instance: Instance, strands: Mapping[int, int], most: int | None = None
+    instance: Instance,
+    strands: Mapping[int, int],
+    most: int | None = None,
+    *,
+    each_alone: bool = False,
 ) -> tuple[Seam, ...]:
     """Seams from the first live loop of every cell to its other live loops.
 
@@ -112,6 +116,7 @@ def widened(
     Args:
         strands: of each live edge.
         most: of each seam.
+        each_alone: as many as each needs without the others, which is nearly always enough.
 
     Raises:
         TooLarge: the seams would need too many strands.
@@ -122,7 +127,8 @@ def widened(
         for _ in own[1:]:
             enough = max(0, darts // 2 - (len(own) == 2))
             widths.append(enough if most is None else min(enough, most))
-            darts += 2 * enough  # on both sides of this seam
+            if not each_alone:
+                darts += 2 * enough  # on both sides of this seam
     if sum(widths) > MOST_STRANDS:
         message = f"{sum(widths)} strands of seams, {MOST_STRANDS} are the most"
         raise TooLarge(f"The model was not built: it would need {message}.")

@@ -28,7 +28,6 @@ from cellcolor.solvers.bounds.cover import (
 )
 from cellcolor.solvers.cpsat.dart_graph import (
     DartGraph,
-    complete_graph,
     dart_graph,
     enough_crossings,
     widened,
@@ -156,14 +155,15 @@ class Part:
         self._recolor(*start, rng, deadline, FEW_MOVES, rings)
         self._recolor(*self.best, rng, deadline, MOVES if turn else FIRST_MOVES, rings)
 
-    def separate(self, effort: float, deadline: Deadline) -> None:
+    def separate(self, effort: float, deadline: Deadline, *, decide: bool = False) -> None:
         """Plan segments that respect separating pairs, each plan a start of local search.
 
         Where there is no plan, the bound rises. It ends with a plan in which no two segments are
-        known to cross.
+        known to cross, unless it is decided that no division follows it.
 
         Args:
             effort: deterministic seconds for a plan.
+            decide: whether such plans are decided by the model of their few colors.
         """
         if self.planner is None:
             self.planner = Planner(self.instance, self.regions, self.cover_bound, self._planned)
@@ -195,21 +195,20 @@ class Part:
                 self._recolor(*start, Random(self._options.seed), deadline, FEW_MOVES)
             if self.done:
                 return
-            if not self.planner.find_separations(plan, deadline) and not self._decide(
-                plan, DECIDING * effort, deadline
-            ):
+            if self.planner.find_separations(plan, deadline):
+                continue
+            if not decide or not self._decide(plan, DECIDING * effort, deadline):
                 return
 
     def solve_model(self, deadline: Deadline) -> None:
         """The complete model, hinted with the best division and bounded by what is proved.
 
-        With several strands an edge, the model with one comes first: it nearly always has a
+        Where fewer strands may do, the model with those comes first: it nearly always has a
         division that meets the bound.
         """
-        if self._once != self._widest:
-            self._minimize(self._once, deadline.share(1 / 4))
-        if not self.done:
-            self._minimize(self._widest, deadline)
+        for complete in self._stages:
+            if not self.done:
+                self._minimize(deadline if complete else deadline.share(1 / 4), complete=complete)
 
     def certified(self) -> CertifiedPart:
         """What shows that no division of the surface has fewer segments than ``surface_bound``."""
@@ -261,12 +260,12 @@ class Part:
         It is the complete model of the few colors that the plan leaves, without objective.
         """
         few = within(self.instance, [region for region, _ in plan])
-        status = cp_model.UNKNOWN
-        for strands in [self._once] + [self._widest] * (self._once != self._widest):
+        for complete in self._stages:
             try:
-                graph = complete_graph(few, {edge: strands[edge] for edge in few.live_edges})
+                graph, target = (
+                    self._graph(own, complete=complete) for own in (few, self.instance)
+                )
                 built = SectorModel(graph, color_regions(few), MOST_LITERALS, deadline=deadline)
-                target = complete_graph(self.instance, strands)
             except TooLarge:
                 return False
             built.model.add(built.segments <= self.bound)
@@ -278,13 +277,15 @@ class Part:
                 painting = canonical(graph, built.painting(solver))
                 self._keep(target, canonical(target, moved(graph, painting, target)))
                 return True
-        if status == cp_model.INFEASIBLE and self.planner is not None:
-            self.planner.refute(plan, self.bound)
-        return status == cp_model.INFEASIBLE
+            if status != cp_model.INFEASIBLE:
+                return False
+        assert self.planner is not None
+        self.planner.refute(plan, self.bound)
+        return True
 
-    def _minimize(self, strands: dict[int, int], deadline: Deadline) -> None:
+    def _minimize(self, deadline: Deadline, *, complete: bool) -> None:
         try:
-            graph = complete_graph(self.instance, strands)
+            graph = self._graph(self.instance, complete=complete)
             built = SectorModel(graph, self.regions, MOST_LITERALS, deadline=deadline)
         except TooLarge as error:
             self.notes.append(str(error))
@@ -292,11 +293,11 @@ class Part:
         built.model.add(built.segments >= self.bound)
         built.hint(canonical(graph, moved(*self.best, graph)))
         solver = self._runner.portfolio(deadline)
-        if final := strands == self._widest:
+        if complete:
             solver.best_bound_callback = self._proved
         status = self._runner.solve(solver, built.model, self._watch)
         self._watch(None)
-        if final and isfinite(solver.best_objective_bound):
+        if complete and isfinite(solver.best_objective_bound):
             self.model_size = built.size
             self._proved(solver.best_objective_bound)
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
@@ -310,6 +311,19 @@ class Part:
         """As many strands of each live edge as were asked for and can be needed."""
         most = self._options.strands
         return {edge: int(min(most, enough)) for edge, enough in self._enough.items()}
+
+    @property
+    def _stages(self) -> tuple[bool, ...]:
+        """Whether models are built on the complete graph: at once, or after a narrow one."""
+        same = self._once == self._widest and self.instance.most_live_loops < 3
+        return (True,) if same else (False, True)
+
+    def _graph(self, instance: Instance, *, complete: bool) -> DartGraph:
+        """The part's darts in some of its colors, with all strands ever needed or with few."""
+        strands = self._widest if complete else self._once
+        strands = {edge: strands[edge] for edge in instance.live_edges}
+        seams = widened(instance, strands, each_alone=not complete)
+        return dart_graph(instance, strands, seams)
 
     @cached_property
     def _narrow(self) -> DartGraph:

@@ -29,7 +29,14 @@ from cellcolor.solvers.cpsat.part import Part, conflict_certificate
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
 from cellcolor.solvers.interruptible import Runner
 
-SHARES = {"exact": 1 / 4, "improve": 1 / 5, "separate": 1 / 2, "model": 2 / 3, "turn": 1 / 4}
+SHARES = {
+    "exact": 1 / 4,
+    "improve": 1 / 5,
+    "separate": 1 / 2,
+    "decide": 1 / 4,
+    "model": 2 / 3,
+    "turn": 1 / 4,
+}
 """The share of the time that is left which each step gets."""
 
 TURNS = 3
@@ -93,8 +100,9 @@ class _Search:
 
         A set cover is the first bound, and a first division. Trees and hubs are solved exactly.
         Local search improves the division. Separating pairs raise the bound, and each plan that
-        respects them is a start of local search. Then the complete model is solved, hinted and
-        bounded by what is known. What is still open is improved in turns until the deadline.
+        respects them is a start of local search. Plans that start nothing better are decided by
+        the model of their few colors. Then the complete model is solved, hinted and bounded by
+        what is known. What is still open is improved in turns until the deadline.
 
         Raises:
             OutOfTime: the deadline, or an interrupt.
@@ -112,12 +120,14 @@ class _Search:
         self._each(partial(Part.separate, effort=EFFORT), SHARES["separate"])
         for turn in range(1, TURNS):
             self._each(partial(Part.improve, turn=turn), SHARES["improve"])
+        self._each(partial(Part.separate, effort=EFFORT, decide=True), SHARES["decide"])
         self._each(Part.solve_model, SHARES["model"])
         turn = TURNS
         while isfinite(self._deadline.moment) and any(not part.done for part in self._parts):
             self._deadline.check()
             self._each(partial(Part.improve, turn=turn), SHARES["turn"])
-            self._each(partial(Part.separate, effort=EFFORT * GROWTH**turn), SHARES["turn"])
+            separate = partial(Part.separate, effort=EFFORT * GROWTH**turn, decide=True)
+            self._each(separate, SHARES["turn"])
             turn += 1
 
     def answer(self) -> Answer:
