@@ -130,7 +130,7 @@ def loops_of(
         cell = borders.cell_of[first[0]]
         if cell == OUTSIDE or first in walked:
             continue
-        darts = []
+        darts: list[int] = []
         step = first
         while not darts or step != first:
             if step in dart_at:

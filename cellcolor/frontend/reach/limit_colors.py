@@ -159,10 +159,10 @@ def _divided(
     parts.sort(key=lambda part: -int(part.mask.sum()))
     kept: list[_Part] = []
     for part in parts:
-        own = links[part.agrees(links)]
+        agreed = links[part.agrees(links)]
         # A segment in a part that is all in another part, with its links, is one of that as well.
         wider = (each for each in kept if not (part.mask & ~each.mask).any())
-        if not any(each.agrees(own).all() for each in wider):
+        if not any(each.agrees(agreed).all() for each in wider):
             kept.append(part)
     return joints, kept, winds
 

@@ -87,10 +87,10 @@ class Judge:
         # Two tests of one kind, with other keys, are one reason.
         self.reason_names = tuple(dict.fromkeys([*STANDARD_REASONS, *(t.name for t in added)]))
         on = workplace.setup.constraints
-        standard = (test for test in STANDARD_TESTS if getattr(on, test.constraint))
-        self._tests: tuple[StandardTest | ValidityTest, ...] = tuple(
-            test for test in (*standard, *added) if test.name not in left_out
-        )
+        tests: list[StandardTest | ValidityTest] = [
+            test for test in STANDARD_TESTS if getattr(on, test.constraint)
+        ]
+        self._tests = tuple(test for test in [*tests, *added] if test.name not in left_out)
         margins = workplace.setup.margins
         least = min(margins.to_object_m, margins.to_obstacles_m, margins.to_ground_m)
         self.tracked_steps = tracked_steps(workplace.robot, least, margins.between_links_m)

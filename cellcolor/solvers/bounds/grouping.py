@@ -75,9 +75,9 @@ def best_grouping(colors: Sequence[frozenset[int]], deadline: Deadline = NEVER) 
         most = best[first, end]
         color = next(c for c in sorted(colors[first]) if linked[first, c][end] == most)
         darts = [first]
-        while (other := following(darts[-1], color, end)) is not None:
-            waiting.append((darts[-1] + 1, other))
-            darts.append(other)
+        while (after := following(darts[-1], color, end)) is not None:
+            waiting.append((darts[-1] + 1, after))
+            darts.append(after)
         waiting.append((darts[-1] + 1, end))
         groups.append((color, tuple(darts)))
     return groups

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 from math import ceil, isfinite
 
-import ortools
 from ortools.sat.python import cp_model
 
 from cellcolor.data.bounds import Bound
@@ -78,7 +78,7 @@ class CompleteModelSolver:
 
     abilities = Abilities(search_spaces=("paper", "surface"), several_loops=True)
 
-    version = f"OR-Tools {ortools.__version__}"
+    version = f"OR-Tools {importlib.metadata.version('ortools')}"
 
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None

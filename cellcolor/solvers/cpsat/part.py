@@ -269,7 +269,7 @@ class Part:
             except TooLarge:
                 return False
             built.model.add(built.segments <= self.bound)
-            built.model.clear_objective()
+            built.model.clear_objective()  # type: ignore[no-untyped-call]
             solver = self._runner.single(effort, deadline)
             solver.parameters.linearization_level = 0
             status = self._runner.solve(solver, built.model)

@@ -210,9 +210,9 @@ def painting_of_sectors(sectors: SectorGraph, colors: Sequence[int]) -> Painting
         if dart < 0 and colors[one] == colors[other]:
             together.union(one, other)
     blocks = [Block(color, set()) for color in colors]
-    for number, dart in enumerate(sectors.graph.darts):
+    for number, side in enumerate(sectors.graph.darts):
         node, color = sectors.at[number], colors[sectors.at[number]]
-        if color == colors[sectors.at[dart.twin]] and color in dart.colors:
+        if color == colors[sectors.at[side.twin]] and color in side.colors:
             blocks[together[node]].darts.add(number)
     painting = []
     for nodes in sectors.nodes:

@@ -6,14 +6,13 @@ of parts add up. Each step is done for every part that is not proved before the 
 
 from __future__ import annotations
 
+import importlib.metadata
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from math import isfinite
-
-import ortools
 
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Strand
@@ -61,7 +60,7 @@ class CpSatSolver:
         start=True,
     )
 
-    version = f"OR-Tools {ortools.__version__}"
+    version = f"OR-Tools {importlib.metadata.version('ortools')}"
 
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
