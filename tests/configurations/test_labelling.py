@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from library import INSTANCES
 from shipped import SCENES
 from vertex_minima import vertex_minimum
 
@@ -65,6 +67,30 @@ def test_a_scene_without_its_robot_has_the_same_minimum(name: str) -> None:
     assert ours.segments == theirs.segments
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "path",
+    [
+        path
+        for folder in ("arms", "parts")
+        for path in sorted((INSTANCES / folder).glob("*.toml"))
+        # A tenth of the bracket's edges is doubtful: that is a question of its mesh.
+        if path.stem not in ("bracket", "torus_refused")
+    ],
+    ids=lambda path: path.stem,
+)
+def test_built_scenes_without_their_robots_have_the_same_minima(path: Path) -> None:
+    built = cellcolor.build(path)
+    pairs = zip(built.configurations, built.node_color, strict=True)
+    own = [solutions[colors >= 0] for solutions, colors in pairs]
+    surface = built.surface
+    found = from_configurations(
+        surface.vertices, surface.faces, shuffled(own, 1)[0], conflicts="cut"
+    )
+    ours, theirs = (cellcolor.solve(each).solution for each in (found.surface, surface))
+    assert (ours.status, ours.segments) == (theirs.status, theirs.segments)
+
+
 @examples(40)
 @given(
     seed=st.integers(0, 10**6),
@@ -74,6 +100,14 @@ def test_a_scene_without_its_robot_has_the_same_minimum(name: str) -> None:
 )
 def test_planted_branches_are_found(seed: int, columns: int, rows: int, branches: int) -> None:
     check_planted(seed, columns, rows, branches)
+
+
+@pytest.mark.slow
+def test_planted_branches_of_2000_surfaces(record_property: pytest.RecordProperty) -> None:
+    rng = np.random.default_rng(0)
+    for seed in range(2000):
+        check_planted(seed, *rng.integers((2, 2, 1), (6, 5, 4)).tolist())
+        record_property("surfaces", seed + 1)
 
 
 def check_planted(seed: int, columns: int, rows: int, branches: int) -> None:
