@@ -56,11 +56,11 @@ def test_a_division_does_without_colors_that_no_way_leads_to(
     known = known[np.isfinite(known[:, 0])]
     between = Ways.between
 
-    def shut_off(ways: Ways, start: Array, end: Array) -> Transfer:
+    def shut_off(ways: Ways, start: Array, end: Array, drawn: int) -> Transfer:
         for at in (start, end):
             if ways.space.largest(ways.space.step(known, at)).min() < 0.3:
                 return Transfer(np.array([start, end]), 0, "a wall")
-        return between(ways, start, end)
+        return between(ways, start, end, drawn)
 
     monkeypatch.setattr(Ways, "between", shut_off)
     planned = cellcolor.plan(scene, spacing_m=0.05)
