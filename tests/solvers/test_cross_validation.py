@@ -140,7 +140,7 @@ def compare(instance: Instance) -> None:
 @pytest.mark.parametrize(
     "path",
     [
-        pytest.param(path, marks=[pytest.mark.second] * (path.stem == "three-loops"))
+        pytest.param(path, marks=[pytest.mark.slow] * (path.stem == "three-loops"))
         for path in KNOWN
     ],
     ids=lambda path: path.stem,

@@ -40,7 +40,7 @@ def same_minimum(instance: Instance, seed: int, strands: int = 1) -> None:
     assert minimum_of(mirrored(instance), strands) == expected
 
 
-@pytest.mark.parametrize("name", ["annulus", pytest.param("three-loops", marks=pytest.mark.second)])
+@pytest.mark.parametrize("name", ["annulus", pytest.param("three-loops", marks=pytest.mark.slow)])
 @examples(4)
 @given(seed=SEEDS)
 def test_cells_with_several_loops(name: str, seed: int) -> None:
