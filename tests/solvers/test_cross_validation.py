@@ -139,10 +139,7 @@ def compare(instance: Instance) -> None:
 
 @pytest.mark.parametrize(
     "path",
-    [
-        pytest.param(path, marks=[pytest.mark.slow] * (path.stem == "three-loops"))
-        for path in KNOWN
-    ],
+    [pytest.param(path, marks=[pytest.mark.slow] * (path.stem == "three-loops")) for path in KNOWN],
     ids=lambda path: path.stem,
 )
 def test_known_cases(path: Path) -> None:
