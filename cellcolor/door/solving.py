@@ -183,7 +183,7 @@ def rest_of(
     Args:
         cover: the share of the area that can be covered and is not left alone which has to be, 0 to
             1; None for all of it. What is best left out is settled first, as by ``tradeoff``.
-        place: what must not be covered, see :meth:`Subject.left_alone`.
+        place: what must not be covered, see ``Subject.left_alone``.
         options: deadline, workers and seed of the search for what is best left out, which takes
             half of the time that is left.
 

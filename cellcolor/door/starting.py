@@ -90,7 +90,7 @@ def new(
 
     The arm has six turning joints; rails and joints beside the chain stand still. The function
     finds its family, its flange and the links that always overlap. It puts the part where the arm
-    reaches it best, of nine places in front of the robot (:func:`best_place`), and proposes a free
+    reaches it best, of nine places in front of the robot (``best_place``), and proposes a free
     home position over it. What it assumed is in the notes.
 
     Args:

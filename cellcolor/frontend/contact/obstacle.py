@@ -37,7 +37,7 @@ class Obstacle(Placement):
     def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shell:
         """The obstacle's outside in its own frame.
 
-        Pictures show it, and the arm is tested against it, unless :meth:`solid` says otherwise.
+        Pictures show it, and the arm is tested against it, unless ``solid`` says otherwise.
 
         Args:
             folder: what the names of files in the table are relative to.

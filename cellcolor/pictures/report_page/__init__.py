@@ -1,5 +1,5 @@
 """``report.html``: one page on a planned motion, complete in itself.
 
-Texts and tables are written here (:mod:`.cards`); what is drawn comes from :mod:`.surface_modes`
-and :mod:`.motion_data`, and :mod:`cellcolor.pictures.viewer` draws it.
+Texts and tables are written here (:mod:`.cards`); what is drawn comes from
+:mod:`.motion_data`, and :mod:`cellcolor.pictures.viewer` draws it.
 """
