@@ -116,7 +116,7 @@ def widened(
     Args:
         strands: of each live edge.
         most: of each seam.
-        each_alone: as many as each needs without the others, which is nearly always enough.
+        each_alone: as many as each needs without the others.
 
     Raises:
         TooLarge: the seams would need too many strands.

@@ -203,8 +203,8 @@ class Part:
     def solve_model(self, deadline: Deadline) -> None:
         """The complete model, hinted with the best division and bounded by what is proved.
 
-        Where fewer strands may do, the model with those comes first: it nearly always has a
-        division that meets the bound.
+        Where fewer strands may do, the smaller model with those comes first: it proves nothing, but
+        may have a division that meets the bound.
         """
         for complete in self._stages:
             if not self.done:
