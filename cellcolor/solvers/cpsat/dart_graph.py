@@ -23,9 +23,6 @@ from cellcolor.union_find import UnionFind
 MOST_STRANDS = 100_000
 """The most strands of seams in a complete graph."""
 
-FEW_STRANDS = 3
-"""The most strands of a seam in a narrow graph."""
-
 
 class Dart(NamedTuple):
     """One side of one strand of a live edge or seam.
@@ -139,10 +136,10 @@ def complete_graph(instance: Instance, strands: Mapping[int, int]) -> DartGraph:
     return dart_graph(instance, own, wide_enough_seams(instance, own))
 
 
-def narrow_graph(instance: Instance) -> DartGraph:
-    """The graph with one strand of each live edge, and few of each seam."""
+def narrow_graph(instance: Instance, most: int) -> DartGraph:
+    """The graph with one strand of each live edge, and at most so many of each seam."""
     once = dict.fromkeys(instance.live_edges, 1)
-    return dart_graph(instance, once, wide_enough_seams(instance, once, FEW_STRANDS))
+    return dart_graph(instance, once, wide_enough_seams(instance, once, most))
 
 
 def seam_places(instance: Instance) -> tuple[Seam, ...]:

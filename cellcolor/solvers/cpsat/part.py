@@ -26,7 +26,6 @@ from cellcolor.solvers.bounds.cover import (
     within,
 )
 from cellcolor.solvers.cpsat.dart_graph import (
-    FEW_STRANDS,
     DartGraph,
     complete_graph,
     enough_crossings,
@@ -39,6 +38,10 @@ from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, moved, 
 from cellcolor.solvers.cpsat.segment_plans import Planner, SegmentPlan, Undecided
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.interruptible import Runner
+
+FEW_STRANDS, SOME_STRANDS = 2, 4
+"""The most strands of a seam in local search, and in the model that comes before the complete one:
+more would make of a cell with many loops a list of many darts."""
 
 MOST_RINGS = 3
 """Rings of sectors in local search, one more from turn to turn. More leave more room."""
@@ -94,7 +97,7 @@ class Part:
         self._strands = {
             edge: int(min(options.strands, enough)) for edge, enough in self._enough.items()
         }
-        self._narrow = narrow_graph(instance)
+        self._narrow = narrow_graph(instance, FEW_STRANDS)
         self.regions = color_regions(instance)
         self.bound = self.surface_bound = len(greedy_independent_set(self.regions))
         self.bound_kind = "strangers"
@@ -315,7 +318,9 @@ class Part:
 
     def _graph(self, instance: Instance, *, complete: bool) -> DartGraph:
         """The part's darts in some of its colors, with all strands ever needed or with few."""
-        return complete_graph(instance, self._strands) if complete else narrow_graph(instance)
+        if complete:
+            return complete_graph(instance, self._strands)
+        return narrow_graph(instance, SOME_STRANDS)
 
     def _covered(self, regions: Sequence[Region]) -> tuple[DartGraph, Painting]:
         """Every cell painted whole in the color of the last region that has it."""
