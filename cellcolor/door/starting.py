@@ -99,11 +99,11 @@ def new(
         folder: for the files; it is created if it does not exist.
         tool: a URDF of the tool; None for a polisher of 100 mm, whose URDF is written as well.
         tip_link: of the tool.
-        unit: ``m``, ``mm``, ``cm`` or ``in``, of the mesh; without it the likely one.
+        unit: ``m``, ``mm``, ``cm`` or ``in``, of the mesh; None for the likely one.
         outside: of an open part, the side that faces ``toward`` the robot or ``away`` from it, or
             ``flip``, the other one than its faces have; of a shell, the side that is covered.
-        cover: ``largest`` for the largest piece between sharp edges, ``all``; without it one side
-            of a shell, all of other parts.
+        cover: the ``largest`` piece between sharp edges, or ``all``; None for one side of a shell,
+            all of other parts.
         fix: positions of joints that stand still, rad, or m of prismatic ones.
         time_limit: seconds, None for no limit.
         progress: told what is being done.
