@@ -15,13 +15,12 @@ from typing import Any
 
 import click
 
-import cellcolor
 from cellcolor.deadline import Deadline
 from cellcolor.version import __version__
 
 Decorator = Callable[[Callable[..., int]], Callable[..., int]]
 
-_PACKAGE = Path(cellcolor.__file__).parent
+_PACKAGE = Path(__file__).parents[1]
 _ENTRY = re.compile(r"^    (\w+(?:, \w+)*): (.*(?:\n        .*)*)", re.MULTILINE)
 """Keywords in a docstring, and what it says of them."""
 _MARKUP = re.compile(r":\w+:`~?(?:\w+\.)*(\w+)`|``(.*?)``")
