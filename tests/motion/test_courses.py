@@ -117,7 +117,8 @@ def test_the_tool_is_compared_with_the_normal_where_its_tip_is(
     normals = np.array([[0.0, -1, 1], [0.0, -1, 1], [0.0, 1, 1]]) / np.sqrt(2)
     middle = np.array([[0.02, 0.003, 0.0]])
     samples = Samples(middle, np.array([[0.0, 0.0, 1.0]]), np.array([0]))
-    pose = SimpleNamespace(tip=middle + [0.0, aside, 0.0], tool_axis=np.array([[0.0, 0.0, -1.0]]))
+    tip = middle + np.array([0.0, aside, 0.0])
+    pose = SimpleNamespace(tip=tip, tool_axis=np.array([[0.0, 0.0, -1.0]]))
     monkeypatch.setattr(following, "forward", lambda *_: pose)
     robot: Any = SimpleNamespace(task=SimpleNamespace(direction=True))
     # 20 µm aside the normal is 0.4 degrees off, 50 µm aside 0.95; 0.6 may be.
