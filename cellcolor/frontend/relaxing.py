@@ -1,4 +1,4 @@
-"""Restrictions of an arm in a scene, and the build of the scene with one of them less, or more.
+"""Restrictions of an arm in a scene, and the build of the scene with one of them less.
 
 Each :class:`Relaxation` takes one thing out of a prepared scene; :func:`relaxations_of` lists all.
 Whatever was valid before is valid after it, so only candidates that failed for its reason are
@@ -301,35 +301,6 @@ def built_asking_less(
     clock.begin("validity between vertices")
     known = before.all_colors.linked, before.verdicts.valid
     linked = valid_along(prepared, verdicts, continuous, deadline, known)
-    return colored(prepared, verdicts, continuous, linked, clock)
-
-
-def built_asking_more(
-    prepared: PreparedScene, before: BuildResult, reasons: Collection[str], clock: StageClock
-) -> BuildResult:
-    """The build of a scene that asks for more: of what was valid only its new tests are made.
-
-    A candidate that was refused before keeps that reason.
-
-    Args:
-        prepared: the scene that asks for more: whatever is valid was valid before.
-        before: of the scene that asks for less. Its arm's solutions have names.
-        reasons: the tests that ask for more.
-    """
-    deadline, edges = clock.deadline, prepared.surface.mesh.edges
-    strict = replace(prepared, left_out=frozenset(prepared.judge.reason_names) - set(reasons))
-    clock.begin("validity at the vertices")
-    verdicts = _judged_there(strict, before, before.verdicts.valid, deadline)
-    clock.begin("continuity")
-    continuous = before.continuous & verdicts.valid[edges].all(axis=1)
-    if "joint limits" in reasons:
-        rows = np.flatnonzero(continuous.any(axis=1))
-        continuous[rows] &= continuous_along(prepared, edges[rows], verdicts, deadline)
-    clock.begin("validity between vertices")
-    left = valid_along(strict, verdicts, continuous & before.all_colors.linked, deadline)
-    # Near a new border of the domain all tests are made at closer points.
-    known = before.all_colors.linked, before.verdicts.valid
-    linked = valid_along(prepared, verdicts, left, deadline, known)
     return colored(prepared, verdicts, continuous, linked, clock)
 
 
