@@ -153,11 +153,11 @@ def repair(
 )
 @option("--tip-link", None, "Of the tool.", default="tip", metavar="LINK")
 @shared("unit")
-@option(
-    "--outside",
-    click.Choice(["toward", "away", "flip"]),
-    "The side to cover: towards the robot, away from it, or the other one than the faces of an "
-    "open part have.  [default: as the faces are wound; of a shell, the outer one]",
+@click.option(
+    "--flip",
+    is_flag=True,
+    help="Cover the other side than the faces of an open part have, or than the outer one of a "
+    "shell.",
 )
 @option(
     "--cover",
