@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from string import Template
@@ -38,28 +38,26 @@ def arm_of(
     Raises:
         InputError: no family fits.
     """
-    from cellcolor.frontend.arm.assembly import check_position, settled
+    from cellcolor.frontend.arm.assembly import settled
     from cellcolor.frontend.arm.loading import weight_faults
     from cellcolor.frontend.arm.urdf import load_urdf
     from cellcolor.frontend.contact.engine import always_touching, pairs_of
     from cellcolor.frontend.reach.prepared_arm import prepare_arm
 
     arm = load_urdf(urdf)
-    known = next((link for link in _FLANGES if link in arm.parent), None)
-    flange = known or max(arm.parent, key=lambda link: len(arm.chain(link)), default="")
+    flange = next((link for link in _FLANGES if link in arm.above), None)
+    flange = flange or max(arm.links, key=lambda link: len(arm.chain(link)))
     chain = arm.chain(flange)
-    in_chain = {arm.joint_above[link] for link in chain[1:]}
+    in_chain = [arm.above[link].name for link in chain[1:]]
     fixed = _fixed_of(arm, in_chain, fix)
     with naming(urdf):
-        for name in arm.leading.keys() & fixed:
-            check_position(arm, name, fixed[name])
         still = settled(arm, fixed)
     moving = arm.leading.keys() - still
-    moved = next((at for at, link in enumerate(chain) if arm.joint_above.get(link) in moving), 0)
+    moved = next((at for at, name in enumerate(in_chain, 1) if name in moving), 0)
     weightless = bool(weight_faults(arm, still))
     if tool is not None:
         own = load_urdf(tool)
-        weightless |= any(own.links[name].find("inertial") is None for name in own.shapes)
+        weightless |= any(link.shapes and link.weightless for link in own.links.values())
     position, turn = mount_of(arm, flange, still)
     keys = {
         "arm": urdf.name,
@@ -69,7 +67,7 @@ def arm_of(
         "tip": json.dumps("tip" if tool is None else tip_link),
         "mount_at": json.dumps(position),
         "mount_turned": json.dumps(turn),
-        "standing": json.dumps([link for link in chain[: moved + 1] if link in arm.shapes]),
+        "standing": json.dumps([link for link in chain[: moved + 1] if arm.links[link].shapes]),
         "fixed": ", ".join(f"{json.dumps(name)} = {at!r}" for name, at in fixed.items()),
         "force": "false" if weightless else "true",
         "touching": "[]",
@@ -110,17 +108,17 @@ def _setup_of(keys: dict[str, str], urdf: Path, tool: Path | None) -> Setup:
     return Setup(**table)
 
 
-def _fixed_of(arm: Urdf, in_chain: set[str], given: Mapping[str, float]) -> dict[str, float]:
+def _fixed_of(arm: Urdf, in_chain: Sequence[str], given: Mapping[str, float]) -> dict[str, float]:
     """The positions of joints that stand still: those given, rails, and what is beside the chain.
 
     Where none is given, the one nearest to zero.
     """
-    from cellcolor.frontend.arm.urdf import PRISMATIC, limits_of
+    from cellcolor.frontend.arm.urdf import PRISMATIC
 
     fixed = dict(given)
-    for name, kind in arm.leading.items():
-        if name not in fixed and (kind == PRISMATIC or name not in in_chain):
-            fixed[name] = float(np.clip(0.0, *limits_of(arm.joints[name])))
+    for name, joint in arm.leading.items():
+        if name not in fixed and (joint.kind == PRISMATIC or name not in in_chain):
+            fixed[name] = float(np.clip(0.0, joint.lower, joint.upper))
     return fixed
 
 
