@@ -83,11 +83,11 @@ def new(
         folder: for the files; it is created if it does not exist.
         tool: a URDF of the tool; None for a polisher of 100 mm, whose URDF is written as well.
         tip_link: of the tool.
-        unit: ``m``, ``mm``, ``cm`` or ``in``, of the mesh; without it the likely one.
-        flip: covers the other side of an open part than its faces have, and of a shell the other
+        unit: ``m``, ``mm``, ``cm`` or ``in``, of the mesh; None for the likely one.
+        flip: covers the other side of an open part than its faces have, or of a shell the other
             one than is usual.
-        cover: ``largest`` for the largest piece between sharp edges, ``all``; without it one side
-            of a shell, all of other parts.
+        cover: the ``largest`` piece between sharp edges, or ``all``; None for one side of a shell,
+            all of other parts.
         fix: positions of joints that stand still, rad, or m of prismatic ones.
         time_limit: seconds, None for no limit.
         progress: told what is being done.
