@@ -227,9 +227,11 @@ def _check_plan(request: Request, claim: Path) -> Exit:
     if request.cache is not None:
         is_folder_or_nothing(request.cache)
 
-    from cellcolor.door.oracle import KeepingOracle
+    from cellcolor.door.oracle import Oracle
+    from cellcolor.oracle.ranges import ProofCache
 
-    oracle = KeepingOracle(subject, request.seconds, request.cache)
+    cache = None if request.cache is None else ProofCache(request.cache, request.seconds)
+    oracle = Oracle(subject, time_limit=request.seconds, cache=cache)
     found = oracle.judge(claim, deadline=request.deadline)
     code = _told(request, found, _described(request.claim, found).to_document(), say_plan)
     if code is Exit.INVALID or not request.require_optimal or found.optimal:

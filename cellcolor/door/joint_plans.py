@@ -18,7 +18,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.door.installed import extras_for
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
-from cellcolor.oracle import JointViolation
+from cellcolor.oracle import JointViolation, PathVerdict
 
 if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult
@@ -45,25 +45,6 @@ class ContactColoring:
     plan: Plan
     color_changes: int
     runs: int
-
-
-@dataclass(frozen=True)
-class PathColors:
-    """The coloring that a path makes, and what is wrong with it.
-
-    Attributes:
-        coloring: what its contacts make.
-        strokes: of the path.
-        violations: the vertices that get no contact in one of their colors.
-        problems: the same in sentences, after those about samples.
-        reachable: how many vertices have colors.
-    """
-
-    coloring: ContactColoring
-    strokes: int
-    violations: tuple[JointViolation, ...]
-    problems: tuple[str, ...]
-    reachable: int
 
 
 def colors_of_joints(
@@ -103,8 +84,8 @@ def colors_of_joints(
     return Plan(tuple(colors)), violations
 
 
-def colors_of_path(subject: Subject, given: AnyPath, deadline: Deadline = NEVER) -> PathColors:
-    """The colors that a tool path gives, and the vertices that it touches in none of their colors.
+def path_verdict(subject: Subject, given: AnyPath, deadline: Deadline = NEVER) -> PathVerdict:
+    """What is known of a tool path before its segments are counted: how it colors the surface.
 
     Raises:
         InputError: the subject is no scene, or the path is of another arm.
@@ -144,7 +125,19 @@ def colors_of_path(subject: Subject, given: AnyPath, deadline: Deadline = NEVER)
         for sample, by in zip(found.misplaced.tolist(), found.misplaced_by.tolist(), strict=True)
     ]
     problems = (*misplaced, *map(str, violations))
-    return PathColors(coloring, path.strokes, tuple(violations), problems, len(reachable))
+    return PathVerdict(
+        problems,
+        None,
+        None,
+        tuple(violations),
+        surface=surface,
+        plan=coloring.plan,
+        strokes=path.strokes,
+        color_changes=coloring.color_changes,
+        runs=None if problems else coloring.runs,
+        reachable=len(reachable),
+        untouched=len(missing),
+    )
 
 
 def coloring_of(surface: LabelledSurface, contacts: VertexContacts) -> ContactColoring:

@@ -26,7 +26,6 @@ from cellcolor.door.starting_choices import (
     fixed_line,
     fixed_of,
     home_of,
-    last_link,
     mount_line,
     side_of,
 )
@@ -201,7 +200,7 @@ def arm_of(
     Raises:
         InputError: none does.
     """
-    from cellcolor.frontend.arm.assembly import check_position, settled
+    from cellcolor.frontend.arm.assembly import settled
     from cellcolor.frontend.arm.kinematics import forward
     from cellcolor.frontend.arm.loading import weight_faults
     from cellcolor.frontend.arm.urdf import load_urdf
@@ -209,19 +208,18 @@ def arm_of(
     from cellcolor.frontend.reach.prepared_arm import prepare_arm
 
     arm = load_urdf(urdf)
-    flange = next((link for link in _FLANGES if link in arm.parent), None) or last_link(arm.parent)
+    flange = next((link for link in _FLANGES if link in arm.above), None)
+    flange = flange or max(arm.links, key=lambda link: len(arm.chain(link)))
     fixed = fixed_of(arm, flange, fix)
     with naming(urdf):
-        for name in arm.leading.keys() & fixed:
-            check_position(arm, name, fixed[name])
         still = settled(arm, fixed)
     chain, moving = arm.chain(flange), arm.leading.keys() - still
-    moved = next((at for at, link in enumerate(chain) if arm.joint_above.get(link) in moving), 0)
-    standing = [link for link in chain[: moved + 1] if link in arm.shapes]
+    moved = next((at for at, link in enumerate(chain) if at and arm.above[link].name in moving), 0)
+    standing = [link for link in chain[: moved + 1] if arm.links[link].shapes]
     weightless = bool(weight_faults(arm, still))
     if tool is not None:
         own = load_urdf(tool)
-        weightless |= any(own.links[name].find("inertial") is None for name in own.shapes)
+        weightless |= any(link.shapes and link.weightless for link in own.links.values())
     keys = {
         "arm": urdf.name,
         "arm_urdf": json.dumps(_relative(urdf, folder)),
@@ -258,7 +256,7 @@ def arm_of(
         keys = found.keys | {"touching": touching}
         return FoundArm(urdf, tool, keys, reach, pairs, fixed, (x, y, z))
     fault = faults[1] if faults[1].file else faults[1].in_file(str(urdf))
-    inside = [name for name in fix if name in {arm.joint_above.get(link) for link in chain}]
+    inside = [name for name in fix if name in {arm.above[link].name for link in chain[1:]}]
     if inside and "6 revolute joints" in fault.message:
         why = f"{fault.message}: --fix {inside[0]} makes a joint of the arm itself stand still"
         raise InputError(fault.file, fault.field, why)

@@ -44,20 +44,6 @@ _WORST = 0.1  # of the points count for how well they are reached
 _NEARLY = 0.9  # of what the best posture covers
 
 
-def last_link(parent: dict[str, str]) -> str:
-    """The link farthest from the root; of several the first."""
-    if not parent:
-        return ""
-
-    def depth(link: str) -> int:
-        count = 0
-        while link in parent:
-            link, count = parent[link], count + 1
-        return count
-
-    return max(parent, key=depth)
-
-
 def mount_line(arm: Urdf, flange: str, still: Mapping[str, float]) -> str:
     """The setup's lines that put the tool's z axis onto the last joint's, if it is not there.
 
@@ -92,13 +78,13 @@ def fixed_of(arm: Urdf, flange: str, given: Mapping[str, float]) -> dict[str, fl
 
     Where none is given, the one nearest to zero.
     """
-    from cellcolor.frontend.arm.urdf import PRISMATIC, limits_of
+    from cellcolor.frontend.arm.urdf import PRISMATIC
 
-    in_chain = {arm.joint_above[link] for link in arm.chain(flange)[1:]}
+    in_chain = [arm.above[link] for link in arm.chain(flange)[1:]]
     fixed = dict(given)
-    for name, kind in arm.leading.items():
-        if name not in fixed and (kind == PRISMATIC or name not in in_chain):
-            fixed[name] = float(np.clip(0.0, *limits_of(arm.joints[name])))
+    for name, joint in arm.leading.items():
+        if name not in fixed and (joint.kind == PRISMATIC or joint not in in_chain):
+            fixed[name] = float(np.clip(0.0, joint.lower, joint.upper))
     return fixed
 
 

@@ -109,7 +109,7 @@ def _course(
         for share in _BETWEEN:
             way = joints[:-1] + share * np.diff(joints, axis=0)
             inner = places[:-1] + share * np.diff(places)
-            bad |= off_way(prepared.robot, way, at(inner))
+            bad |= off_way(prepared.robot, way, sampled(path, inner), surface.mesh, normals)
         ends = valid[:-1] & valid[1:] & ~torn
         bad &= ends
         if not bad.any():

@@ -9,7 +9,7 @@ trajectories tests between them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -179,16 +179,24 @@ def bowed(robot: Robot, joints: Array) -> Mask:
     return np.asarray((off > too_far) | (angles_between(middle.tool_axis, axis) > _BOW_ANGLE))
 
 
-def off_way(robot: Robot, joints: Array, samples: Samples) -> Mask:
+def off_way(
+    robot: Robot, joints: Array, samples: Samples, mesh: TriangleMesh, normals: Array
+) -> Mask:
     """Which configurations (k, joints) have tip or axis off the sample (k) that they are meant for.
 
-    Of the tip only the distance along the normal counts.
+    Of the tip only the distance along the normal counts. The axis is compared with the normal where
+    the tip is: beside a sharp edge a normal turns by degrees on a tenth of a millimeter.
+
+    Args:
+        normals: (n, 3) outward, at the vertices of the mesh; of any length, which counts between
+            them.
     """
     poses = forward(robot, joints)
-    lifted = np.einsum("ij,ij->i", poses.tip - samples.points, samples.normals)
+    there = with_normals_of(replace(samples, points=poses.tip), mesh, normals)
+    lifted = np.einsum("ij,ij->i", poses.tip - samples.points, there.normals)
     off = np.abs(lifted) > _OFF
     if robot.task.direction:
-        off |= angles_between(poses.tool_axis, -samples.normals) > _TILT
+        off |= angles_between(poses.tool_axis, -there.normals) > _TILT
     return np.asarray(off)
 
 

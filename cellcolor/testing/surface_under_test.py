@@ -10,10 +10,11 @@ from pathlib import Path
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import OutOfTime
 from cellcolor.door.drawing import show
-from cellcolor.door.oracle import AnyPlan, KeepingOracle
+from cellcolor.door.oracle import AnyPlan, Oracle
 from cellcolor.door.subject import Solvable
 from cellcolor.errors import CellcolorError, InputError
 from cellcolor.oracle import ProvenRange, Verdict
+from cellcolor.oracle.ranges import ProofCache
 from cellcolor.testing import PICTURES
 
 _SHOWN = 3  # problems of a plan that is not valid
@@ -61,7 +62,8 @@ class SurfaceUnderTest:
         Raises:
             InputError: the source cannot be used, or has no surface.
         """
-        self._oracle = KeepingOracle(source, time_limit, folder)
+        cache = None if folder is None else ProofCache(folder, time_limit)
+        self._oracle = Oracle(source, time_limit=time_limit, cache=cache)
         self._folder, self._record = folder, record
         self.surface: LabelledSurface = self._oracle.surface
 

@@ -17,9 +17,17 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.setup import Setup
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.motion import courses
+from cellcolor.motion import courses, following
 from cellcolor.motion.courses import Course, laid_out
-from cellcolor.motion.following import DISTANCE, Followed, Samples, bowed, even_places, sampled
+from cellcolor.motion.following import (
+    DISTANCE,
+    Followed,
+    Samples,
+    bowed,
+    even_places,
+    off_way,
+    sampled,
+)
 from cellcolor.tool_paths.cover import cover
 from cellcolor.tool_paths.registry import PATTERNS
 
@@ -98,6 +106,23 @@ def test_steps_that_bow_off_their_way_are_told() -> None:
     assert share[~told].max() < 0.4 and tilt[~told].max() < 0.75
     assert ((share > 0.25) | (tilt > 0.4))[told].all()
     assert 50 < told.sum() < 350
+
+
+@pytest.mark.parametrize(("aside", "told"), [(0.0, False), (2e-5, False), (5e-5, True)])
+def test_the_tool_is_compared_with_the_normal_where_its_tip_is(
+    aside: float, told: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Across a sharp edge 6 mm wide, on which the normal turns by 90 degrees."""
+    mesh = TriangleMesh(np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.006, 0]]), np.array([[0, 1, 2]]))
+    normals = np.array([[0.0, -1, 1], [0.0, -1, 1], [0.0, 1, 1]]) / np.sqrt(2)
+    middle = np.array([[0.02, 0.003, 0.0]])
+    samples = Samples(middle, np.array([[0.0, 0.0, 1.0]]), np.array([0]))
+    tip = middle + np.array([0.0, aside, 0.0])
+    pose = SimpleNamespace(tip=tip, tool_axis=np.array([[0.0, 0.0, -1.0]]))
+    monkeypatch.setattr(following, "forward", lambda *_: pose)
+    robot: Any = SimpleNamespace(task=SimpleNamespace(direction=True))
+    # 20 µm aside the normal is 0.4 degrees off, 50 µm aside 0.95; 0.6 may be.
+    assert off_way(robot, np.zeros((1, 6)), samples, mesh, normals).tolist() == [told]
 
 
 @pytest.mark.parametrize("beyond", [0.0, 1e-6, 2e-5])

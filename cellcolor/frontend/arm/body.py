@@ -204,13 +204,13 @@ def _solid_body(link: str, joint: int, solid: Shape) -> Body:
 
 
 def _round_bodies(
-    link: str, joint: int, own: tuple[LinkShape, ...], placed: list[pin.GeometryObject]
+    link: str, joint: int, own: tuple[LinkShape, ...], placed: list[pin.SE3]
 ) -> list[Body]:
-    """Bodies of a link's cylinders, spheres and capsules, where Pinocchio has them.
+    """Bodies of a link's cylinders, spheres and capsules, placed in the frame of the joint.
 
     A cylinder with a sphere of its radius on both ends is a capsule.
     """
-    shapes = [(shape, each.placement) for shape, each in zip(own, placed, strict=True)]
+    shapes = list(zip(own, placed, strict=True))
     spheres = [
         (np.array(at.translation), shape.sizes[0]) for shape, at in shapes if shape.kind == "sphere"
     ]
@@ -256,56 +256,39 @@ class Shapes:
 
 
 def place_shapes(
-    trees: tuple[Urdf, Urdf],
-    whole: Urdf,
-    model: pin.Model,
-    geometry: pin.GeometryModel,
-    shapes: Shapes,
+    whole: Urdf, model: pin.Model, shapes: Shapes
 ) -> tuple[tuple[Body, ...], tuple[StandIn, ...]]:
     """Bodies of all links, base first, and what stands for the meshes among them.
 
     Args:
-        trees: arm and tool, for the names and folders of their files.
-        whole: both as one tree.
-        model, geometry: as Pinocchio has read it, meshes as spheres.
+        whole: arm and tool as one tree.
+        model: the joints that move, and a frame for each link.
 
     Raises:
-        InputError: Pinocchio has read other shapes, or a mesh cannot be found or read.
+        InputError: a mesh cannot be found or read.
     """
-    meshed = {name for name, own in whole.shapes.items() if any(s.kind == "mesh" for s in own)}
     for name in shapes.chosen_of:
-        if name not in meshed:
+        if name not in whole.links or all(s.kind != "mesh" for s in whole.links[name].shapes):
             message = "no such link with a mesh for collisions"
             raise InputError(None, f"robot.mesh_collision_of.{name}", message)
-    read: dict[str, list[pin.GeometryObject]] = {}
-    for each in geometry.geometryObjects:
-        read.setdefault(model.frames[each.parentFrame].name, []).append(each)
     bodies: list[Body] = []
     stand_ins: list[StandIn] = []
-    for link, own in whole.shapes.items():
-        tree = trees[1] if link in trees[1].shapes else trees[0]
-        placed = read.get(link, [])
-        if len(placed) != len(own):
-            message = f"Pinocchio read {len(placed)} of {len(own)} shapes"
-            raise InputError(str(whole.file), f"link[{link}].collision", message)
-        joint = placed[0].parentJoint
-        bodies += _round_bodies(link, joint, own, placed)
-        for number, (shape, at) in enumerate(zip(own, placed, strict=True)):
-            if shape.kind not in ("box", "mesh"):
-                continue
-            turn = np.array(at.placement.rotation)
-            center = np.array(at.placement.translation)
+    for name, link in whole.links.items():
+        frame = model.frames[model.getFrameId(name, pin.FrameType.BODY)]
+        joint, placed = frame.parentJoint, [frame.placement * each.place for each in link.shapes]
+        bodies += _round_bodies(name, joint, link.shapes, placed)
+        for number, (shape, at) in enumerate(zip(link.shapes, placed, strict=True)):
             if shape.kind == "box":
                 corners = trimesh.creation.box(shape.sizes).vertices
-                solid = convex_hull(corners @ turn.T + center)
+                solid = convex_hull(corners @ at.rotation.T + at.translation)
                 assert solid is not None  # no side of it is 0
-                bodies.append(_solid_body(link, joint, solid))
-                continue
-            place = f"link[{link}].collision[{number}].mesh"
-            file = find_mesh(shape.file, tree.file, place, tree.folder, shapes.package_folders)
-            vertices, faces = load_link_mesh(file, shape.sizes)
-            chosen = shapes.chosen_of.get(link, shapes.chosen)
-            own_mesh = (vertices @ turn.T + center, faces)
-            stand_ins.append(mesh_body(link, joint, file, *own_mesh, chosen))
-            bodies.append(stand_ins[-1].body)
+                bodies.append(_solid_body(name, joint, solid))
+            elif shape.kind == "mesh":
+                place = f"link[{name}].collision[{number}].mesh"
+                file = find_mesh(shape.mesh, link.file, place, link.folder, shapes.package_folders)
+                vertices, faces = load_link_mesh(file, shape.sizes)
+                chosen = shapes.chosen_of.get(name, shapes.chosen)
+                own_mesh = (vertices @ at.rotation.T + at.translation, faces)
+                stand_ins.append(mesh_body(name, joint, file, *own_mesh, chosen))
+                bodies.append(stand_ins[-1].body)
     return tuple(bodies), tuple(stand_ins)
