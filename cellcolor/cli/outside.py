@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from cellcolor.cli.ending import INTERRUPTS, Exit
 from cellcolor.cli.options import (
     INPUT,
-    METRES,
+    LENGTH,
     PATH,
+    TIME_LIMIT,
     cellcolor,
     json_option,
+    keywords,
     option,
     output_option,
-    shared,
 )
 from cellcolor.cli.terminal import apart_from, at_work, print_json, say, say_lines
 from cellcolor.data.wording import count
@@ -131,7 +132,7 @@ def _checked(instance: Instance, found: OutsideAnswer, kind: str) -> Solution:
 @output_option("INSTANCE.json", "The instance.", required=True)
 @option(
     "--correct",
-    None,
+    str,
     "Correct cells beside an edge if the file has them wrong, -1 for the outside.",
     to="corrections",
     metavar="EDGE=A,B",
@@ -199,21 +200,14 @@ def _row(entry: LibraryEntry) -> list[str]:
     ]
 
 
-@cellcolor.command()
+@cellcolor.command(of=("door.reading:label",))
 @click.argument("source", metavar="JOINTS.(npz|json|csv)", type=PATH)
 @output_option("SURFACE.json", "The labelled surface.", required=True)
-@option("--mesh", PATH, "The mesh of a CSV file, in m.", metavar="MESH.(obj|ply|stl)")
-@click.option("--cut", is_flag=True, help="Cut colors that have two solutions of a vertex.")
-@option("--reach", METRES, "The arm's reach; a part far larger is refused.")
-@shared("time_limit")
-def label(
-    source: Path,
-    output: Path,
-    mesh: Path | None,
-    cut: bool,
-    reach: float | None,
-    time_limit: Deadline,
-) -> Exit:
+@keywords(mesh=PATH)
+@option("--cut", bool, "Cut colors that have two solutions of a vertex.")
+@option("--reach", LENGTH, to="reach_m")
+@TIME_LIMIT
+def label(source: Path, output: Path, cut: bool, time_limit: Deadline, **wanted: Any) -> Exit:
     """Make a labelled surface of joint solutions at the vertices of a mesh, without a robot.
 
     Solutions of neighboring vertices that are clearly the nearest to each other belong to one
@@ -222,15 +216,11 @@ def label(
     from cellcolor.data.surface import LabelledSurface
     from cellcolor.door.reading import label as labelled
 
-    check_output(output, kind_of_format(LabelledSurface.FORMAT), [source, *filter(None, [mesh])])
+    inputs = [source, *filter(None, [wanted.get("mesh")])]
+    check_output(output, kind_of_format(LabelledSurface.FORMAT), inputs)
     with at_work(source, "matching", "not labelled: the time limit came first"):
-        found = labelled(
-            source,
-            mesh=mesh,
-            conflicts="cut" if cut else "refuse",
-            reach_m=reach,
-            deadline=time_limit,
-        )
+        wanted["conflicts"] = "cut" if cut else "refuse"
+        found = labelled(source, deadline=time_limit, **wanted)
     INTERRUPTS.check()
     with apart_from(output):
         say_lines(found)

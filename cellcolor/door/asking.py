@@ -101,8 +101,9 @@ def place(
     Args:
         scene: its file, its shipped name, or the value.
         jobs: processes at a time, or who does the work.
-        **question: the ranges ``x``, ``y``, ``z``, ``roll``, ``pitch`` and ``yaw``, and whatever
-            else :class:`~cellcolor.questions.placements.PlacementQuestion` and
+        x, y, z: from where to where the part may be moved, m; None for where it is.
+        roll, pitch, yaw: the same of its angles, rad (extrinsic x, y, z).
+        **question: whatever else :class:`~cellcolor.questions.placements.PlacementQuestion` and
             :class:`~cellcolor.door.asked.Work` have.
 
     Raises:

@@ -59,7 +59,7 @@ def plan(
 
     Args:
         scene: its file, its shipped name, or the value.
-        pattern: how tool paths are laid out, such as ``contour``; None for the usual one.
+        pattern: of the tool paths, as for ``cover``; None for the usual one.
         cover, left_alone: what has to be covered, as for ``solve``; the judge does not
             ask for what is left out.
         ask: what the page is to tell besides, of ``tradeoff``, ``explain``, ``place`` and
