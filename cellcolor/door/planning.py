@@ -18,7 +18,7 @@ from cellcolor.door.planned import (
     PlannedScene,
     PlanOutOfTime,
     UnfinishedPlan,
-    axes_of,
+    controller_base,
 )
 from cellcolor.door.solving import rest_of, solve
 from cellcolor.door.subject import Result, Subject, scene_of
@@ -96,7 +96,7 @@ def plan(
         prepared = prepare(_with_motion(given, motion), deadline)
         # What is wrong with the motion is refused before the long work begins.
         home_of(prepared, motion_of(prepared))
-        axes_of(prepared)
+        controller_base(prepared)
     with clock.timed("colors"):
         whole = _built(prepared, given.file, StageClock(deadline, progress))
     run = _Run(whole, pattern or DEFAULT_PATTERN, clock, progress)
