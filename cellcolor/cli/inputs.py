@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 from cellcolor.cli.terminal import at_work, complain
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.door.installed import extras_for
-from cellcolor.door.subject import Subject, open_subject, scene_or_file
+from cellcolor.door.subject import Subject, open_subject, scene_of
 from cellcolor.errors import InputError, system_errors
 
 if TYPE_CHECKING:
@@ -72,12 +71,8 @@ def with_tolerance(path: Path, text: str | None) -> Path | Scene:
                 f"must be a length, an angle, or both, with units, such as 2mm,0.5deg, is {text!r}"
             )
             raise InputError(None, "--tolerance", message) from error
-    with extras_for("the front end"):
-        from cellcolor.frontend.scene import Scene as SceneValue
-
-    scene = scene_or_file(path)
-    assert isinstance(scene, Path)
-    return SceneValue.read(scene).varied(tolerance=tolerance, file=scene)
+    scene = scene_of(path)
+    return scene.varied(tolerance=tolerance, file=scene.file)
 
 
 def read_subject(path: Path, deadline: Deadline = NEVER, tolerance: str | None = None) -> Subject:
