@@ -278,7 +278,8 @@ def survey_of(prepared: PreparedScene) -> Survey:
     base = prepared.robot.base_frame(None)[:3, 3]
     found = survey(prepared.surface, prepared.arm.kinematics.viewpoints, base)
     gravity = np.array(prepared.setup.task.gravity_m_per_s2)
-    if not prepared.part.open or not gravity.any():
+    solid = TriangleMesh(prepared.own_body.vertices, prepared.own_body.faces)
+    if not solid.border.any() or not gravity.any():
         return found
     mesh = prepared.surface.mesh
     down = mesh.triangle_normals @ unit(gravity) > _DOWN
