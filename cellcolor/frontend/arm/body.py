@@ -5,7 +5,7 @@ Each engine makes of a shape what it works with.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -20,7 +20,7 @@ from cellcolor.arrays import Array, Index
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.link_mesh import find_mesh, load_link_mesh
 from cellcolor.frontend.arm.urdf import LinkShape, Urdf
-from cellcolor.frontend.setup import MeshCollision
+from cellcolor.frontend.setup import MeshCollision, RobotFiles
 from cellcolor.mesh.triangle_mesh import grouped
 
 Kind = Literal[
@@ -240,37 +240,25 @@ def _is_cap(sphere: tuple[Array, float], point: Array, radius: float) -> bool:
     return abs(own - radius) < _SAME and float(np.linalg.norm(center - point)) < _SAME
 
 
-@dataclass(frozen=True)
-class Shapes:
-    """How the meshes of links collide, and where they are.
-
-    Attributes:
-        chosen: what stands for a link's mesh.
-        chosen_of: the same of some links by their names.
-        package_folders: packages, or folders that have some, for ``package://``.
-    """
-
-    chosen: MeshCollision = "hull"
-    chosen_of: Mapping[str, MeshCollision] = field(default_factory=dict)
-    package_folders: tuple[Path, ...] = ()
-
-
 def place_shapes(
-    whole: Urdf, model: pin.Model, shapes: Shapes
+    whole: Urdf, model: pin.Model, files: RobotFiles, folder: Path
 ) -> tuple[tuple[Body, ...], tuple[StandIn, ...]]:
     """Bodies of all links, base first, and what stands for the meshes among them.
 
     Args:
         whole: arm and tool as one tree.
         model: the joints that move, and a frame for each link.
+        files: what stands for a link's mesh, and where packages are.
+        folder: what the names of package folders are relative to.
 
     Raises:
         InputError: a mesh cannot be found or read.
     """
-    for name in shapes.chosen_of:
+    for name in files.mesh_collision_of:
         if name not in whole.links or all(s.kind != "mesh" for s in whole.links[name].shapes):
             message = "no such link with a mesh for collisions"
             raise InputError(None, f"robot.mesh_collision_of.{name}", message)
+    packages = [folder / name for name in files.package_folders]
     bodies: list[Body] = []
     stand_ins: list[StandIn] = []
     for name, link in whole.links.items():
@@ -285,9 +273,9 @@ def place_shapes(
                 bodies.append(_solid_body(name, joint, solid))
             elif shape.kind == "mesh":
                 place = f"link[{name}].collision[{number}].mesh"
-                file = find_mesh(shape.mesh, link.file, place, link.folder, shapes.package_folders)
+                file = find_mesh(shape.mesh, link.file, place, link.folder, packages)
                 vertices, faces = load_link_mesh(file, shape.sizes)
-                chosen = shapes.chosen_of.get(name, shapes.chosen)
+                chosen = files.mesh_collision_of.get(name, files.mesh_collision)
                 own_mesh = (vertices @ at.rotation.T + at.translation, faces)
                 stand_ins.append(mesh_body(name, joint, file, *own_mesh, chosen))
                 bodies.append(stand_ins[-1].body)
