@@ -5,12 +5,14 @@ Each engine makes of a shape what it works with.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
+import igl
 import numpy as np
 import pinocchio as pin
 import trimesh
@@ -160,7 +162,11 @@ class Body:
         return Shape(kind, (self.radius, self.length), rotation=turn, origin=middle)
 
 
-@dataclass(frozen=True)
+_SAMPLES = 5_000  # of a hull's surface
+_FAR = 0.02  # m; a hull that is farther off its mesh is warned of
+
+
+@dataclass(frozen=True, eq=False)
 class StandIn:
     """What collides in the place of a link's mesh.
 
@@ -176,6 +182,41 @@ class StandIn:
     vertices: Array
     faces: Index
     body: Body
+
+    @cached_property
+    def off_m(self) -> float:
+        """How far the farthest of many points on the hull is from the mesh; 0 of the mesh."""
+        if self.chosen == "exact":
+            return 0.0
+        surface = trimesh.Trimesh(self.body.shape.vertices, self.body.shape.faces, process=False)
+        points, _ = trimesh.sample.sample_surface(surface, _SAMPLES, seed=0)
+        squares = igl.point_mesh_squared_distance(points, self.vertices, self.faces)[0]
+        return math.sqrt(squares.max())
+
+    @property
+    def warning(self) -> str | None:
+        """For a hull that is far off its mesh: what to choose instead."""
+        if self.off_m <= _FAR:
+            return None
+        return (
+            f"{self.link!r}: the convex hull of {self.file.name} is {self._millimeters} mm off "
+            "the mesh, and fills what is hollow there: "
+            '"exact" collides as the mesh is (mesh_collision_of under [robot])'
+        )
+
+    def __str__(self) -> str:
+        if self.chosen == "hull":
+            return (
+                f"{self.link!r}: convex hull of {self.file.name}, up to {self._millimeters} mm off"
+            )
+        closed = trimesh.Trimesh(self.vertices, self.faces, process=False).is_watertight
+        open_ = "" if closed else "; it is open: what is all inside it goes unnoticed"
+        return f"{self.link!r}: {self.file.name}, as it is{open_}"
+
+    @property
+    def _millimeters(self) -> str:
+        """How far it is off, rounded down to a tenth."""
+        return f"{math.floor(1e4 * self.off_m) / 10:g}"
 
 
 def mesh_body(
