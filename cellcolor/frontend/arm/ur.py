@@ -12,7 +12,7 @@ solutions of the ideal arm Newton's method leads to those of the true one, which
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -24,7 +24,7 @@ from cellcolor.frontend.arm.calibrated import CALIBRATION, Axes, NearIdeal, idea
 from cellcolor.frontend.arm.inverse import SixRevolute, pose_at_zero
 from cellcolor.frontend.arm.kinematics import angle_about, forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.signs import Signs, signs_of
+from cellcolor.frontend.arm.signs import signs_of
 from cellcolor.frontend.setup import RobotFiles
 
 BRANCHES = tuple(
@@ -260,29 +260,21 @@ class UrKinematics(SixRevolute):
         return () if self._near is None else self._near.remarks(self.solve(points, directions))
 
     def _near_ideal(self, off: tuple[float, float]) -> NearIdeal:
-        """How an arm is solved whose axes are a little off those of the ideal one, rad and m."""
+        """How an arm is solved whose axes are a little off those of the ideal one, rad and m.
+
+        Which of ``BRANCHES`` the signs stand for is asked of the ideal arm's solutions for the pose
+        among many that is farthest from any change of sign: there the true arm's factors have the
+        same signs.
+        """
         signs = signs_of(self._robot, self.reach, 2 * CALIBRATION)
         assert signs is not None  # a UR-type arm has them
-        closed_form = partial(solve_inverse, self.geometry, locked_angle=self._locked, slack=_SLACK)
-        return NearIdeal(
-            robot=self._robot,
-            closed_form=closed_form,
-            signs=signs,
-            sign_of=_sign_of(self._robot, self.geometry, signs),
-            off=off,
-        )
-
-
-def _sign_of(robot: Robot, geometry: UrGeometry, signs: Signs) -> NDArray[np.intp]:
-    """For each of ``BRANCHES`` the index that the signs have for it, (8,).
-
-    Asked of the ideal arm's solutions for the pose among many that is farthest from any change of
-    sign: there the true arm's factors have the same signs.
-    """
-    tries = np.random.default_rng(0).uniform(-np.pi, np.pi, (1000, 6))
-    poses = forward(robot, tries)
-    found = solve_inverse(geometry, poses.tip, poses.tool_axis, 0.0)
-    found = found[~np.isnan(found).any(axis=(1, 2))]
-    factors = signs.factors(forward(robot, found.reshape(-1, 6)))
-    clearest = np.argmax(np.abs(factors).reshape(len(found), -1).min(axis=1))
-    return signs.branches(robot, found[clearest])[0]
+        tries = np.random.default_rng(0).uniform(-np.pi, np.pi, (1000, 6))
+        poses = forward(self._robot, tries)
+        found = solve_inverse(self.geometry, poses.tip, poses.tool_axis, 0.0)
+        found = found[~np.isnan(found).any(axis=(1, 2))]
+        factors = signs.factors(forward(self._robot, found.reshape(-1, 6)))
+        clearest = np.argmax(np.abs(factors).reshape(len(found), -1).min(axis=1))
+        own = signs.branches(self._robot, found[clearest])[0]
+        signs = replace(signs, numbers=np.argsort(own))
+        solve = partial(solve_inverse, self.geometry, locked_angle=self._locked, slack=_SLACK)
+        return NearIdeal(robot=self._robot, closed_form=solve, signs=signs, off=off)
