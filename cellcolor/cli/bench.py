@@ -14,17 +14,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from cellcolor.cli.ending import Exit
-from cellcolor.cli.options import (
-    PATH,
-    SECONDS,
-    Commands,
-    Count,
-    cellcolor,
-    option,
-    output_option,
-    shared,
-)
-from cellcolor.cli.terminal import complain, progress_bar, say, say_lines, shown
+from cellcolor.cli.options import COUNT, PATH, Commands, Real, cellcolor, option, output_option
+from cellcolor.cli.terminal import complain, line_of, say, say_lines
 from cellcolor.data.wording import count
 from cellcolor.errors import CellcolorError, InputError, SolverMissing
 from cellcolor.solvers.registry import DEFAULT, PAPERS, REFERENCE
@@ -55,42 +46,38 @@ def bench() -> None:
     """Experiments: solvers compared, on families of instances and on files."""
 
 
-@bench.command()
+@bench.command(of=("door.solving:solve",))
 @click.argument("subjects", metavar="FAMILY|FILE…", nargs=-1, required=True)
 @option(
     "--solver",
-    None,
+    str,
     "Solver; repeat the option for several.",
     to="solvers",
     default=(PAPERS, REFERENCE, DEFAULT),
+    show_default=True,
     metavar="NAME[@WORKERS]",
     multiple=True,
 )
-@option("--seeds", None, "Of families.", default="0-9", metavar="N-M", callback=_numbers)
+@option("--seeds", str, "Of families.", default="0-9", show_default=True, callback=_numbers)
 @option(
     "--time-limit",
-    SECONDS,
-    "Seconds for each solve; several are tried in turn.",
+    Real(0, 1e6, min_open=True),
+    "Seconds for each solve; several are tried in turn.  [default: 10]",
     to="limits",
     default=(10.0,),
     multiple=True,
 )
-@option(
-    "--repetitions",
-    Count(1),
-    "Repetitions of each run, with other random numbers in the solver.",
-    default=1,
-)
-@shared("search_space")
+@option("--repetitions", COUNT, "Of each run, with other random numbers in the solver.", default=1)
+@option("--search-space", click.Choice(["paper", "surface"]), default="paper")
 @option(
     "--memory",
-    Count(1),
-    "Memory for each run; a run that needs more is killed.",
+    COUNT,
+    "For each run, MB; a run that needs more is killed.",
     to="megabytes",
     default=4096,
-    metavar="MB",
+    show_default=True,
 )
-@shared("jobs")
+@option("--jobs", COUNT, "Number of processes at a time.", default=1)
 @output_option(
     "TABLE.csv", "A row for each run. An existing table is continued: its runs are not repeated."
 )
@@ -175,12 +162,13 @@ def _run_solvers(
         made: list[Row] = []
         total = len(specimens) * sweep.runs_of_each
         try:
-            with Workers(jobs) as workers, progress_bar(total) as advance:
+            with Workers(jobs) as workers, line_of(Path("bench"), "solving") as show:
                 for row in sweep.run(workers):
                     made.append(row)
                     if file is not None:
                         file.append(row)
-                    advance(len(made) + sweep.skipped, f"{shown(row.subject)}: {row.contestant}")
+                    done = f"{len(made) + sweep.skipped} of {total}"
+                    show(f"{done}, {row.subject}: {row.contestant}")
         except KeyboardInterrupt:
             interrupted = True
             complain("interrupted")

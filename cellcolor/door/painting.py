@@ -93,7 +93,10 @@ def cover(
     Args:
         surface: the painted surface, or its file; or what ``cellcolor.paint`` returns.
         plan: one color for each vertex of it, or the file of that; None with a ``Painted``.
-        pattern: ``contour`` or ``back-and-forth``, or what another package registers.
+        pattern: of the tool paths: ``contour``; ``back-and-forth``, whose rows may run along a
+            vector (``back-and-forth:X,Y,Z``), around an axis (``back-and-forth:around:X,Y,Z``) or
+            so that they turn least (``back-and-forth:fewest-turns``); or what another package
+            registers.
         spacing_m: desired distance between neighboring passes, m.
         tool_radius_m: of the tool's footprint, m.
         normals: (n, 3) outward unit normals at the vertices; those of the mesh if it is None.

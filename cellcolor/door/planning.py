@@ -18,10 +18,10 @@ from cellcolor.door.planned import (
     PlannedScene,
     PlanOutOfTime,
     UnfinishedPlan,
-    axes_of,
+    controller_base,
 )
 from cellcolor.door.solving import rest_of, solve
-from cellcolor.door.subject import Result, Subject, scene_or_file
+from cellcolor.door.subject import Result, Subject, scene_of
 from cellcolor.errors import InputError, naming
 from cellcolor.questions.places import Place
 from cellcolor.solvers.interface import Options
@@ -59,7 +59,7 @@ def plan(
 
     Args:
         scene: its file, its shipped name, or the value.
-        pattern: how tool paths are laid out, such as ``contour``; None for the usual one.
+        pattern: of the tool paths, as for ``cover``; None for the usual one.
         cover, left_alone: what has to be covered, as for ``solve``; the judge does not
             ask for what is left out.
         ask: what the page is to tell besides, of ``tradeoff``, ``explain``, ``place`` and
@@ -84,22 +84,19 @@ def plan(
         if name not in _QUESTIONS:
             raise InputError(None, "ask", f"{name!r} is not one of {', '.join(_QUESTIONS)}")
     deadline = Deadline.of(time_limit)
-
-    given_or_file = scene_or_file(scene)
     require_motion("planning a motion", _NEEDED)
+    given = scene_of(scene)
     find_pattern(pattern or DEFAULT_PATTERN)
     from cellcolor.frontend.build import StageClock
     from cellcolor.frontend.prepared import prepare
-    from cellcolor.frontend.scene import Scene
     from cellcolor.motion.limits import home_of, motion_of
 
     clock = StageClock(deadline, progress)
-    given = Scene.read(given_or_file) if isinstance(given_or_file, Path) else given_or_file
     with clock.timed("preparation"):
         prepared = prepare(_with_motion(given, motion), deadline)
         # What is wrong with the motion is refused before the long work begins.
         home_of(prepared, motion_of(prepared))
-        axes_of(prepared)
+        controller_base(prepared)
     with clock.timed("colors"):
         whole = _built(prepared, given.file, StageClock(deadline, progress))
     run = _Run(whole, pattern or DEFAULT_PATTERN, clock, progress)

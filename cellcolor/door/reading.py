@@ -151,7 +151,7 @@ def label(
         mesh: an OBJ, PLY or STL file in m, for ``.csv``, whose vertices are numbered from 0 in the
             order of this file.
         conflicts: see :func:`~cellcolor.configurations.labelling.from_configurations`.
-        reach_m: of the arm, see there.
+        reach_m: of the arm; a part far larger is refused.
         deadline: when to give up.
 
     Raises:

@@ -93,10 +93,8 @@ def test_all_files_are_there_and_belong_together(
     assert run("check", *painted) == 0
     assert asked["minimum_lift_offs"] == read["solution.json"].lift_offs == 1
     # The instance is what `build` would have made, its surface and side file beside it.
-    assert (
-        run("show", folder / "instance.json", "--view", "reasons", "-o", tmp_path / "reach.html")
-        == 0
-    )
+    reasons = ["--view", "reasons", "-o", tmp_path / "reach.html"]
+    assert run("show", folder / "instance.json", *reasons) == 0
     said = capsys.readouterr()
     assert "2 segments, 1 lift-off, optimal" in said.out
     assert f"wrote {len(list(folder.iterdir()))} files to {folder}" in said.out
@@ -154,7 +152,7 @@ def test_without_a_table_the_needed_key_is_named(
         (["--home-rad", "0,1,x,0,0,0"], "--home-rad"),
         (["--pattern", "zigzag"], "pattern"),
         (["--pattern", "back-and-forth:x"], "pattern"),
-        (["--time-limit", "-1"], "--time-limit"),
+        (["--time-limit", "-1"], "time_limit"),
     ],
 )
 def test_bad_options_are_one_line(
@@ -252,9 +250,8 @@ def test_a_time_limit_before_the_painting_leaves_the_number(
         raise OutOfTime("the time limit came first")
 
     monkeypatch.setattr(cellcolor.motion.scene_painting, "paint_scene", painting)
-    with pytest.raises(
-        cellcolor.PlanOutOfTime, match="before the segments were painted"
-    ) as stopped:
+    cut = "before the segments were painted"
+    with pytest.raises(cellcolor.PlanOutOfTime, match=cut) as stopped:
         cellcolor.plan(scene)
     assert stopped.value.unfinished.solution.lift_offs == 1
     written = stopped.value.unfinished.save(tmp_path / "a")
@@ -268,7 +265,7 @@ def test_a_time_limit_before_the_painting_leaves_the_number(
 def test_a_question_without_an_answer_is_said_with_the_reason(
     scene: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """On the terminal and on the page, with exit code 3; the others are answered all the same."""
+    """On the terminal and on the page, with exit code 3; the others are answered."""
     asked: list[str] = []
 
     def question(name: str, end: Exception | Any) -> None:

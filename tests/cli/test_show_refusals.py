@@ -129,7 +129,6 @@ def test_side_file_that_is_none(tmp_path: Path, capsys: Capture) -> None:
         ["a.json", "b.json", "c.json", "-o", "x.png"],
         ["a.json", "b.json", "--view", "graph", "-o", "x.png"],
         ["a.toml", "--vertex", "1", "-o", "x.png"],
-        ["a.toml", "--vertex", "-1", "--branch", "0", "-o", "x.png"],
         ["a.toml", "--branch", "0", "-o", "x.png"],
     ],
     ids=" ".join,

@@ -23,7 +23,7 @@ from stand_in import stand_in
 
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.errors import InputError
-from cellcolor.exports.interface import ArmAxes, PlannedMotion
+from cellcolor.exports.interface import PlannedMotion
 from cellcolor.exports.programs import ASIDE, BESIDE, PRESSED, WITHIN
 from cellcolor.exports.registry import exported, why_no_program
 from cellcolor.exports.samples import stretches
@@ -51,8 +51,10 @@ def setup_of(name: str) -> Setup:
     return Setup.read(setup)
 
 
-def axes_of(name: str) -> ArmAxes:
-    return ArmAxes.of(arm(name), setup_of(name).robot.flange_link)
+def on(robot: Robot, setup: Setup) -> dict[str, Any]:
+    """What exports know of an arm."""
+    flange, base = robot.frame_of(setup.robot.flange_link), robot.base_frame(None)
+    return {"robot": robot, "flange": flange, "base": base}
 
 
 def driven(
@@ -69,8 +71,8 @@ def driven(
         "waves", robot.joint_names, times, joints, random.normal(size=(count, 3)),
         np.tile([0.0, 0.0, 1.0], (count, 1)), contact, np.where(contact, 0, -1), unplanned,
     )  # fmt: skip
-    keys = {"controller": setup_of(name).controller} | keys
-    return PlannedMotion(trajectory, axes_of(name), **keys)
+    keys = on(robot, setup_of(name)) | {"controller": setup_of(name).controller} | keys
+    return PlannedMotion(trajectory, **keys)
 
 
 def read(name: str, planned: PlannedMotion) -> Program:
@@ -122,8 +124,8 @@ def test_between_linear_moves_the_tip_is_where_it_was_judged(name: str, robot: s
     part = pin.SE3(pin.rpy.rpyToMatrix(0.3, -0.2, 1.0), np.array([0.5, -0.1, 0.2])).homogeneous
     planned = driven(robot, seed=3, part=part, force_n=9.0, **FANUC_ON_KR6.get(name, {}))
     found = read(f"{stem}_linear.{suffix}", planned)
-    axes, (own,), (moves,) = planned.axes, judged(planned, name), found.stretches
-    assert np.allclose(axes.flange @ found.tool, axes.tip, atol=2e-6)
+    (own,), (moves,) = judged(planned, name), found.stretches
+    assert np.allclose(planned.flange @ found.tool, planned.robot.tip, atol=2e-6)
     # Where the part is seen from: a controller of Universal Robots has its x axis backward.
     base = np.diag([-1.0, -1, 1, 1]) if suffix == "script" else np.eye(4)
     assert np.allclose(base @ found.part, part, atol=2e-5)
@@ -167,10 +169,9 @@ def tip_of(robot: Robot, joints: np.ndarray) -> np.ndarray:
 def on_the_wok(**keys: object) -> PlannedMotion:
     """Over the shipped wok, whose normal turns far in a stroke."""
     made = stand_in()
-    setup = made.prepared.setup
-    axes = ArmAxes.of(made.prepared.robot, setup.robot.flange_link)
+    own = on(made.prepared.robot, made.prepared.setup)
     planned = replace(made.trajectory, unplanned=())
-    return PlannedMotion(planned, axes, **{"force_n": 20.0} | keys)
+    return PlannedMotion(planned, **own, **{"force_n": 20.0} | keys)
 
 
 @pytest.mark.parametrize("name", ["cellcolor.script", "cellcolor_linear.script"])
@@ -317,9 +318,9 @@ def test_joint_angles_do_not_depend_on_the_mounting(rpy: str) -> None:
         f'<child link="base_link"/><origin xyz="0.1 0.2 1.5" rpy="{rpy}"/></joint></robot>'
     )
     hung = Setup.read(setup).varied(robot={"arm_urdf": text.replace("</robot>", mount)})
-    axes = ArmAxes.of(prepare_arm(hung).robot, hung.robot.flange_link)
+    own = on(prepare_arm(hung).robot, hung)
     upright = driven("ur5")
-    turned = replace(upright, axes=axes, part=axes.base)
+    turned = replace(upright, **own, part=own["base"])
     found, expected = read("cellcolor.script", turned), read("cellcolor.script", upright)
     for one, other in zip(found.stretches[0], expected.stretches[0], strict=True):
         assert np.array_equal(one.joints, other.joints)
@@ -359,15 +360,17 @@ def test_an_arm_gets_the_program_of_its_controller_and_no_other(name: str) -> No
 )
 def test_where_there_is_no_program_the_reason_is_said(robot: str, change: str, reason: str) -> None:
     """As for a URDF with another zero or another sense of rotation."""
-    axes, planned = axes_of(robot), driven(robot)
-    if change == "turned":
-        axes = replace(axes, directions=axes.directions * np.array([1, -1, 1, 1, 1, 1])[:, None])
-    if change == "moved":
-        axes = replace(axes, points=axes.points * [-1, 1, 1])
+    planned = driven(robot)
+    twisted, folded = planned.robot.axis.copy(), planned.robot.placement.copy()
+    twisted[1], folded[2:4, 0, 3] = -twisted[1], -folded[2:4, 0, 3]
+    changed = {
+        "turned": {"axis": twisted},
+        "moved": {"placement": folded},
+    }
     table = Controller(language="urscript") if change == "urscript" else planned.controller
     planned = replace(
         planned,
-        axes=None if change == "unknown" else axes,
+        robot=None if change == "unknown" else replace(planned.robot, **changed.get(change, {})),
         controller=None if change == "no table" else table,
     )
     assert reason in str(why_no_program(planned))
