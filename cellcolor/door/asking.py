@@ -12,7 +12,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.door.asked import SearchAndTell, Work, begun, options_of
 from cellcolor.door.drawing import kind_of_picture
 from cellcolor.door.installed import extras_for
-from cellcolor.door.subject import Solvable, open_subject, scene_or_file
+from cellcolor.door.subject import Solvable, open_subject, scene_of
 from cellcolor.errors import CellcolorError, InputError
 from cellcolor.files.writing import Output, path_of, write
 from cellcolor.lab.workers import Task, Workers, as_they_end
@@ -74,12 +74,11 @@ def explain(
         OutOfTime: the time limit came before the scene itself was solved.
     """
     options = options_of(search)
-    scene = scene_or_file(scene)
-    with extras_for("the front end"):
-        from cellcolor.frontend.prepared import prepare
-        from cellcolor.questions.explaining import explained
+    own = scene_of(scene)
+    from cellcolor.frontend.prepared import prepare
+    from cellcolor.questions.explaining import explained
 
-    return explained(prepare(scene, options.deadline), options, search.get("progress"))
+    return explained(prepare(own, options.deadline), options, search.get("progress"))
 
 
 _BATCH = 32  # placements per task; reading the scene takes as long as one or two of them
@@ -91,7 +90,7 @@ _ALL_DAY = 86_400.0  # s, the limit of a process if there is no time limit
 def place(
     scene: str | PathLike[str] | Scene,
     *,
-    jobs: int | Workers = 1,
+    jobs: int = 1,
     **question: Any,
 ) -> Placements:
     """Look for placements of a scene's part that need fewer lift-offs, and prove the best ones.
@@ -100,7 +99,7 @@ def place(
 
     Args:
         scene: its file, its shipped name, or the value.
-        jobs: processes at a time, or who does the work.
+        jobs: processes at a time.
         x, y, z: from where to where the part may be moved, m; None for where it is.
         roll, pitch, yaw: the same of its angles, rad (extrinsic x, y, z).
         **question: whatever else :class:`~cellcolor.questions.placements.PlacementQuestion` and
@@ -112,21 +111,15 @@ def place(
     """
     work: Any = {name: question.pop(name) for name in Work.__annotations__ if name in question}
     deadline, report = begun(work)
-    scene = scene_or_file(scene)
-    asked = PlacementQuestion.of(**question)
-    if isinstance(jobs, int) and jobs < 1:
+    own, asked = scene_of(scene), PlacementQuestion.of(**question)
+    if jobs < 1:
         raise InputError(None, "jobs", f"must be 1 or more, is {jobs}")
-    with extras_for("the front end"):
-        from cellcolor.frontend.scene import Scene as SceneValue
-        from cellcolor.questions.searching_places import search_places
+    from cellcolor.questions.searching_places import search_places
 
-    own: Scene = scene if isinstance(scene, SceneValue) else SceneValue.read(scene)
-    workers: AbstractContextManager[Workers | None] = nullcontext()
-    if not isinstance(jobs, int):
-        workers = jobs
-    elif jobs > 1:
-        workers = Workers(jobs)
     minima = _Minima(asked, deadline, report)
+    workers: AbstractContextManager[Workers | None] = nullcontext()
+    if jobs > 1:
+        workers = Workers(jobs)
     with workers as others:
         alone, many = partial(minima, None), partial(minima, others)
         return search_places(own, asked, alone, many, deadline, report)

@@ -21,7 +21,7 @@ from cellcolor.door.planned import (
     controller_base,
 )
 from cellcolor.door.solving import rest_of, solve
-from cellcolor.door.subject import Result, Subject, scene_or_file
+from cellcolor.door.subject import Result, Subject, scene_of
 from cellcolor.errors import InputError, naming
 from cellcolor.questions.places import Place
 from cellcolor.solvers.interface import Options
@@ -84,17 +84,14 @@ def plan(
         if name not in _QUESTIONS:
             raise InputError(None, "ask", f"{name!r} is not one of {', '.join(_QUESTIONS)}")
     deadline = Deadline.of(time_limit)
-
-    given_or_file = scene_or_file(scene)
     require_motion("planning a motion", _NEEDED)
+    given = scene_of(scene)
     find_pattern(pattern or DEFAULT_PATTERN)
     from cellcolor.frontend.build import StageClock
     from cellcolor.frontend.prepared import prepare
-    from cellcolor.frontend.scene import Scene
     from cellcolor.motion.limits import home_of, motion_of
 
     clock = StageClock(deadline, progress)
-    given = Scene.read(given_or_file) if isinstance(given_or_file, Path) else given_or_file
     with clock.timed("preparation"):
         prepared = prepare(_with_motion(given, motion), deadline)
         # What is wrong with the motion is refused before the long work begins.

@@ -18,14 +18,7 @@ from cellcolor.data.wording import check_share
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.decomposition import decomposition_of
 from cellcolor.door.asked import SearchOfAPart, Work, begun, options_of
-from cellcolor.door.subject import (
-    Result,
-    Solvable,
-    Subject,
-    build_scene,
-    open_subject,
-    scene_or_file,
-)
+from cellcolor.door.subject import Result, Solvable, Subject, open_subject, scene_of
 from cellcolor.errors import InputError, TooLarge
 from cellcolor.questions.places import Place
 from cellcolor.solvers import checked
@@ -55,7 +48,8 @@ def build(scene: str | PathLike[str] | Scene, **work: Unpack[Work]) -> BuildResu
         InputError: the scene, its setup, a URDF or a mesh cannot be used; names file and field.
         OutOfTime: the time limit came first.
     """
-    return build_scene(scene_or_file(scene), *begun(work))
+    deadline, progress = begun(work)
+    return open_subject(scene_of(scene), deadline, progress).build()
 
 
 def decompose(source: Solvable, *, time_limit: TimeLimit = None) -> Instance:
