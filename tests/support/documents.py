@@ -172,7 +172,7 @@ VERDICT: Document = {
 }
 
 
-Change = Callable[[Document], None]
+Change = Callable[[Document], object]
 
 
 def broken(document: Document, change: Change) -> Document:
