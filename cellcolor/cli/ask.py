@@ -30,7 +30,6 @@ from cellcolor.cli.terminal import at_work, complain, print_json, say, say_lines
 _SCENE = click.argument("scene", metavar="SCENE", type=INPUT)
 _SEARCH = "door.asked:Search"
 _RANGE = Numbers("a range is two numbers LOW,HIGH", 2)
-_UNSOLVED = "the time limit came before the scene itself was solved"
 _MOST_STOPS = 1000
 
 
@@ -78,8 +77,8 @@ def tradeoff(source: Path, share: float | None, as_json: bool, **search: Any) ->
     from cellcolor.cli.tables import nothing_to_cover
     from cellcolor.door.asking import tradeoff as front_of
 
-    with at_work(source, "asking", "the time limit came before any division was found") as tell:
-        subject = read_subject(source, search["time_limit"])
+    subject = read_subject(source, search["time_limit"])
+    with at_work(source, "asking") as tell:
         front = front_of(subject, progress=tell, **search)
         if not front.points:
             complain(f"{source}: {nothing_to_cover(front.instance)}")
@@ -102,7 +101,7 @@ def explain(scene: Path, as_json: bool, **search: Any) -> Exit:
     """
     from cellcolor.door.asking import explain as explanation_of
 
-    with at_work(scene, "explaining", _UNSOLVED) as tell:
+    with at_work(scene, "explaining") as tell:
         found = explanation_of(scene, progress=tell, **search)
     _print(scene, (row.to_document() for row in found), found, as_json)
     return Exit.done_if(found.complete and all(row.proved_for_surface for row in found))
@@ -139,7 +138,7 @@ def place(
 
     if picture is not None:
         check_output(picture, kind_of_picture(picture, flat=True), [scene])
-    with at_work(scene, "placing", _UNSOLVED) as tell:
+    with at_work(scene, "placing") as tell:
         found = placements_of(with_tolerance(scene, tolerance), progress=tell, **search)
         if picture is not None:
             save_map(found, picture)
@@ -201,15 +200,14 @@ def setups(
         check_output(output, kind_of_picture(output), [scene])
     if folder is not None:
         is_folder_or_nothing(folder)
-    with at_work(scene, "setting up", "the time limit came before there was a choice") as tell:
+    with at_work(scene, "setting up") as tell:
         found = set_ups_of(scene, at=at, stops=dict(stops) or None, progress=tell, **search)
     _print(scene, [found.answer.to_document()], found, as_json)
     if output is not None:
         found.plot(output)
     valid = whole = True
     if folder is not None:
-        late = "the time limit came before all motions were planned"
-        with at_work(scene, "planning", late) as tell:
+        with at_work(scene, "planning") as tell:
             planned = found.plan(time_limit=search["time_limit"], progress=tell)
         for one, plan in zip(found.answer.set_ups, planned, strict=True):
             own = folder / f"set-up-{one.number}"

@@ -15,7 +15,7 @@ import click
 
 from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import COUNT, PATH, Commands, Real, cellcolor, option, output_option
-from cellcolor.cli.terminal import complain, progress_bar, say, say_lines, shown
+from cellcolor.cli.terminal import complain, line_of, say, say_lines
 from cellcolor.data.wording import count
 from cellcolor.errors import CellcolorError, InputError, SolverMissing
 from cellcolor.solvers.registry import DEFAULT, PAPERS, REFERENCE
@@ -162,12 +162,13 @@ def _run_solvers(
         made: list[Row] = []
         total = len(specimens) * sweep.runs_of_each
         try:
-            with Workers(jobs) as workers, progress_bar(total) as advance:
+            with Workers(jobs) as workers, line_of(Path("bench"), "solving") as show:
                 for row in sweep.run(workers):
                     made.append(row)
                     if file is not None:
                         file.append(row)
-                    advance(len(made) + sweep.skipped, f"{shown(row.subject)}: {row.contestant}")
+                    done = f"{len(made) + sweep.skipped} of {total}"
+                    show(f"{done}, {row.subject}: {row.contestant}")
         except KeyboardInterrupt:
             interrupted = True
             complain("interrupted")

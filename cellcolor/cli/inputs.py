@@ -12,8 +12,7 @@ from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cellcolor.cli.ending import INTERRUPTS
-from cellcolor.cli.terminal import complain, stages_of
+from cellcolor.cli.terminal import at_work, complain
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.door.subject import Subject, open_subject, scene_of
@@ -35,8 +34,6 @@ _UNITS = {
 def open_file(path: Path, deadline: Deadline = NEVER, tolerance: str | None = None) -> Subject:
     """Read what is in a file, and build a scene.
 
-    Libraries that catch everything can swallow a signal; it is raised before and after a build.
-
     Args:
         deadline: when a build has to end.
         tolerance: of a scene's part, see :func:`with_tolerance`.
@@ -45,10 +42,8 @@ def open_file(path: Path, deadline: Deadline = NEVER, tolerance: str | None = No
         InputError: with the file named.
         OutOfTime: the deadline came before there was a surface.
     """
-    INTERRUPTS.check()
-    with stages_of(path, "building") as report_stage:
-        subject = open_subject(with_tolerance(path, tolerance), deadline, report_stage)
-    INTERRUPTS.check()
+    with at_work(path, "building") as tell:
+        subject = open_subject(with_tolerance(path, tolerance), deadline, tell)
     return replace(subject, path=path)
 
 

@@ -23,7 +23,7 @@ from cellcolor.cli.options import (
     option,
     output_option,
 )
-from cellcolor.cli.terminal import apart_from, complain, say, say_lines
+from cellcolor.cli.terminal import complain, say, say_lines
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.writing import (
@@ -65,30 +65,29 @@ def build(source: Path, output: Path) -> Exit:
     if is_scene(source) and not alone:
         check_output(surface_path, kind_of_format(LabelledSurface.FORMAT), [source])
         check_output(side_path, SIDE_FILE, [source])
-    with apart_from(output):
-        subject = open_file(source)
-        if subject.given_instance is not None:
-            raise InputError(str(source), "format", "is an instance already")
-        beside: list[Output] = []
-        instance = subject.graph()
-        reference = os.path.relpath(source.resolve(), output.parent.resolve())
-        if (built := subject.built) is not None:
-            side = {"side_file": side_path.name}
-            surface = replace(built.surface, meta=built.surface.meta | side)
-            instance, reference = replace(instance, meta=surface.meta), surface_path.name
-            beside = [Output(side_path, SIDE_FILE, [built.candidates.to_bytes()])]
-            beside += [Output.of(surface_path, surface)]
-        named = None
-        if instance.surface is not None and not alone:
-            named = replace(instance.surface, path=PurePath(reference).as_posix())
-        instance, beside = replace(instance, surface=named), [] if alone else beside
-        # The instance last: it carries the fingerprint of its surface.
-        write([*beside, Output.of(output, instance)], [source])
-        if built is not None:
-            say_lines(built.report)
-        for file in beside:
-            say(f"wrote {file.path}")
-        say(f"wrote {output}: {instance.size}")
+    subject = open_file(source)
+    if subject.given_instance is not None:
+        raise InputError(str(source), "format", "is an instance already")
+    beside: list[Output] = []
+    instance = subject.graph()
+    reference = os.path.relpath(source.resolve(), output.parent.resolve())
+    if (built := subject.built) is not None:
+        side = {"side_file": side_path.name}
+        surface = replace(built.surface, meta=built.surface.meta | side)
+        instance, reference = replace(instance, meta=surface.meta), surface_path.name
+        beside = [Output(side_path, SIDE_FILE, [built.candidates.to_bytes()])]
+        beside += [Output.of(surface_path, surface)]
+    named = None
+    if instance.surface is not None and not alone:
+        named = replace(instance.surface, path=PurePath(reference).as_posix())
+    instance, beside = replace(instance, surface=named), [] if alone else beside
+    # The instance last: it carries the fingerprint of its surface.
+    write([*beside, Output.of(output, instance)], [source])
+    if built is not None:
+        say_lines(built.report)
+    for file in beside:
+        say(f"wrote {file.path}")
+    say(f"wrote {output}: {instance.size}")
     if instance.nothing_to_cover:
         complain(f"{source}: {nothing_to_cover(instance)}")
         return Exit.STOPPED

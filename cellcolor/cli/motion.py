@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cellcolor.cli.ending import INTERRUPTS, Exit
+from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import (
     INPUT,
     LEFT_ALONE,
@@ -25,7 +25,7 @@ from cellcolor.cli.options import (
     option,
     output_option,
 )
-from cellcolor.cli.terminal import at_work, complain, say, say_lines, stages_of
+from cellcolor.cli.terminal import at_work, complain, say, say_lines
 from cellcolor.data.wording import count, listed, segments_and_lift_offs
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError, naming
@@ -68,16 +68,12 @@ def paint(source: Path, claim: Path, output: Path, time_limit: Deadline, **wante
     inputs = [source, claim]
     plan_path = check_painted(output, inputs)
     solution = Solution.read(claim)
-    try:
-        with naming(claim):
-            subject = read_subject(source, time_limit)
-            if subject.surface_path is not None:  # of an instance: what it names is read as well
-                inputs.append(subject.surface_path)
-            check_painted(output, inputs)
-            painted = painted_of(subject, solution, time_limit=time_limit, **wanted)
-    except OutOfTime as error:
-        message = f"{source}: not painted: the time limit came first; nothing is written"
-        raise OutOfTime(message) from error
+    subject = read_subject(source, time_limit)
+    if subject.surface_path is not None:  # of an instance: what it names is read as well
+        inputs.append(subject.surface_path)
+    check_painted(output, inputs)
+    with at_work(source, "painting"), naming(claim):
+        painted = painted_of(subject, solution, time_limit=time_limit, **wanted)
     write([Output.of(plan_path, painted.plan), Output.of(output, painted.surface)], inputs)
     added = len(painted.surface.vertices) - len(subject.surface.vertices)
     refined = f", {count(added, 'vertex', 'vertices')} added" if added else ""
@@ -146,14 +142,8 @@ def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
     inputs = [source, plan]
     check_output(output, kind_of_format(ToolPaths.FORMAT), inputs)
     surface, colors = LabelledSurface.read(source), Plan.read(plan)
-    try:
-        with stages_of(source, "covering") as report:
-            found = covered_of(surface, colors, progress=report, **wanted)
-    except OutOfTime as error:
-        message = f"{source}: not covered: the time limit came first; nothing is written"
-        raise OutOfTime(message) from error
-    except InputError as error:
-        raise error if error.file or error.field else error.in_file(str(plan)) from error
+    with at_work(source, "covering") as tell, naming(plan):
+        found = covered_of(surface, colors, progress=tell, **wanted)
     write([Output.of(output, found.paths)], inputs)
     say(f"wrote {output}: {found}")
     for path, measures in zip(found.paths.paths, found.measures, strict=True):
@@ -199,10 +189,8 @@ def plan(
     from cellcolor.door.planning import plan as planned_of
 
     check_folder(output, [scene])
-    INTERRUPTS.check()
-    late = "not planned: the time limit came before the topological graph was known"
     try:
-        with at_work(scene, "planning", late) as report:
+        with at_work(scene, "planning") as report:
             planned = planned_of(with_tolerance(scene, tolerance), progress=report, **wanted)
             report("files and page")
             begun = time.perf_counter()
@@ -215,7 +203,6 @@ def plan(
         if isinstance(end.__cause__, PlanOutOfTime):
             return _unfinished(scene, output, end.__cause__.unfinished)
         raise
-    INTERRUPTS.check()
     warn_of(scene, planned.subject)
     say_lines(planned)
     verdict = planned.verdict

@@ -15,6 +15,7 @@ from typing import Any
 
 import click
 
+from cellcolor.cli.terminal import apart_from
 from cellcolor.deadline import Deadline
 from cellcolor.version import __version__
 
@@ -55,6 +56,8 @@ def said_of(place: str) -> dict[str, str]:
 class Command(click.Command):
     """A command of the front door; an option that is not given is no argument of its function.
 
+    What it prints goes to standard error if it writes its output to standard output.
+
     Args:
         of: functions and classes, as ``module:name``, whose docstrings say what options mean that
             have no text of their own.
@@ -78,7 +81,8 @@ class Command(click.Command):
         for own in self._keywords:
             if ctx.params[own.name or ""] is None:
                 del ctx.params[own.name or ""]
-        return super().invoke(ctx)
+        with apart_from(ctx.params.get("output")):
+            return super().invoke(ctx)
 
 
 class Commands(click.Group):

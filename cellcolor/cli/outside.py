@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cellcolor.cli.ending import INTERRUPTS, Exit
+from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import (
     INPUT,
     LENGTH,
@@ -19,7 +19,7 @@ from cellcolor.cli.options import (
     option,
     output_option,
 )
-from cellcolor.cli.terminal import apart_from, at_work, print_json, say, say_lines
+from cellcolor.cli.terminal import at_work, print_json, say, say_lines
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, RefusedResult, naming
@@ -63,12 +63,11 @@ def export(source: Path, output: Path, kind: str | None) -> Exit:
 
     form = PORTABLE[kind]
     check_output(output, form.kind, [source])
-    with apart_from(output):
-        instance = read_instance(source)
-        with naming(source):
-            content = form.write(instance)
-        write([Output(output, form.kind, content)], [source])
-        say(f"wrote {output}, for {form.about}")
+    instance = read_instance(source)
+    with naming(source):
+        content = form.write(instance)
+    write([Output(output, form.kind, content)], [source])
+    say(f"wrote {output}, for {form.about}")
     return Exit.DONE
 
 
@@ -97,14 +96,13 @@ def answer(source: Path, given: Path, kind: str, output: Path) -> Exit:
 
     inputs = [source, given]
     check_output(output, kind_of_format(Solution.FORMAT), inputs)
-    with apart_from(output):
-        instance = read_instance(source)
-        with naming(given):
-            solution = _checked(instance, read_answer(instance, read_text(given), kind), kind)
-        write([Output.of(output, solution)], inputs)
-        say(f"wrote {output}: {count(solution.segments or 0, 'segment')}")
-        for note in solution.notes:
-            say(note)
+    instance = read_instance(source)
+    with naming(given):
+        solution = _checked(instance, read_answer(instance, read_text(given), kind), kind)
+    write([Output.of(output, solution)], inputs)
+    say(f"wrote {output}: {count(solution.segments or 0, 'segment')}")
+    for note in solution.notes:
+        say(note)
     return Exit.DONE
 
 
@@ -151,11 +149,10 @@ def import_(source: Path, output: Path, corrections: tuple[str, ...]) -> Exit:
     check_output(output, kind_of_format(Instance.FORMAT), [source])
     instance = read_imcgs(source, corrections, output.name.removesuffix(".json"))
     write([Output.of(output, instance)], [source])
-    with apart_from(output):
-        say(f"wrote {output}: {instance.size}")
-        for entry in library().index.entries:
-            if entry.fingerprint == instance.sha256:
-                say(f"This is {entry.name} of the library: {entry.paper} segments.")
+    say(f"wrote {output}: {instance.size}")
+    for entry in library().index.entries:
+        if entry.fingerprint == instance.sha256:
+            say(f"This is {entry.name} of the library: {entry.paper} segments.")
     return Exit.DONE
 
 
@@ -218,12 +215,10 @@ def label(source: Path, output: Path, cut: bool, time_limit: Deadline, **wanted:
 
     inputs = [source, *filter(None, [wanted.get("mesh")])]
     check_output(output, kind_of_format(LabelledSurface.FORMAT), inputs)
-    with at_work(source, "matching", "not labelled: the time limit came first"):
+    with at_work(source, "matching"):
         wanted["conflicts"] = "cut" if cut else "refuse"
         found = labelled(source, deadline=time_limit, **wanted)
-    INTERRUPTS.check()
-    with apart_from(output):
-        say_lines(found)
-        write([Output.of(output, found.surface)], [source])
-        say(f"wrote {output}")
+    say_lines(found)
+    write([Output.of(output, found.surface)], [source])
+    say(f"wrote {output}")
     return Exit.DONE

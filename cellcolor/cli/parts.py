@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from cellcolor.cli.ending import INTERRUPTS, Exit
+from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import (
     LENGTH,
     PATH,
@@ -22,7 +22,7 @@ from cellcolor.cli.options import (
     option,
     output_option,
 )
-from cellcolor.cli.terminal import apart_from, at_work, print_json, say, say_lines
+from cellcolor.cli.terminal import at_work, print_json, say, say_lines
 from cellcolor.errors import InputError
 from cellcolor.files.writing import FileKind, Output, check_output, write
 
@@ -77,23 +77,21 @@ def inspect(part: Path, output: Path | None, as_json: bool, **wanted: Any) -> Ex
     if output is not None:
         kind = kind_of_picture(output)
         check_output(output, kind, [part])
-    with at_work(part, "inspecting", "not inspected: the time limit came first") as tell:
+    with at_work(part, "inspecting") as tell:
         found = parts.inspect(part, progress=tell, **wanted)
         if output is not None:
             tell("drawing")
             from cellcolor.pictures.mesh_picture import faulty_part
 
             drawn = Drawing(faulty_part(found)).render(output.suffix)
-    INTERRUPTS.check()
-    with apart_from(output):
-        if as_json:
-            print_json(found.to_dict())
-        else:
-            say_lines(found)
-        if output is not None:
-            write([Output(output, kind, [drawn])], [part])
-            if not as_json:
-                say(f"wrote {output}")
+    if as_json:
+        print_json(found.to_dict())
+    else:
+        say_lines(found)
+    if output is not None:
+        write([Output(output, kind, [drawn])], [part])
+        if not as_json:
+            say(f"wrote {output}")
     return Exit.DONE
 
 
@@ -117,19 +115,16 @@ def repair(part: Path, output: Path, as_json: bool, **wanted: Any) -> Exit:
     if output.suffix != ".obj":
         raise InputError(str(output), None, "must end in .obj")
     check_output(output, kind, [part])
-    late = "not repaired: the time limit came first; nothing is written"
-    with at_work(part, "repairing", late) as tell:
+    with at_work(part, "repairing") as tell:
         made = parts.repair(part, progress=tell, **wanted)
         tell("writing")
         content = made.to_obj().encode()
-    INTERRUPTS.check()
-    with apart_from(output):
-        write([Output(output, kind, [content])], [part])
-        if as_json:
-            print_json(made.to_dict())
-        else:
-            say_lines(made)
-            say(f"wrote {output}, meters_per_unit = {made.meters_per_unit:g}")
+    write([Output(output, kind, [content])], [part])
+    if as_json:
+        print_json(made.to_dict())
+    else:
+        say_lines(made)
+        say(f"wrote {output}, meters_per_unit = {made.meters_per_unit:g}")
     return Exit.DONE
 
 
@@ -159,10 +154,8 @@ def new(
     """
     from cellcolor.door.starting import new as begin
 
-    late = "the time limit came first; nothing is written"
-    with at_work(part, "beginning", late) as tell:
+    with at_work(part, "beginning") as tell:
         made = begin(part, arm, output, fix=_once(fix), progress=tell, **wanted)
-    INTERRUPTS.check()
     say(f"wrote {made.scene} and its setup: {made.reachable_share:.0%} of the part can be reached")
     for note in made.notes:
         say(f"  {note}")

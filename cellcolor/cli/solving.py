@@ -17,7 +17,7 @@ from cellcolor.checker.claimed_numbers import contradictions
 from cellcolor.cli.ending import INTERRUPTS, Exit, worst
 from cellcolor.cli.inputs import read_subject
 from cellcolor.cli.tables import nothing_to_cover, print_solution
-from cellcolor.cli.terminal import apart_from, complain, line_of, print_json
+from cellcolor.cli.terminal import complain, line_of, print_json
 from cellcolor.data.solution import Division, Solution, scheme_line
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline, OutOfTime
@@ -85,25 +85,24 @@ def solve_files(
             print_json({"file": str(file)} | known | {"error": message})
         codes.append(code)
 
-    with apart_from(output):
-        for file, target in zip(files, targets, strict=True):
-            deadline, first = first or Deadline.after(seconds), None
-            try:
-                result, lines = _solve(file, deadline, tolerance, schemes, search)
-                if target is not None:
-                    _write(target, result, lines, files, of_a_part)
-            except Interrupted:
-                failed(Exit.STOPPED, f"{file}: interrupted, nothing found yet")
-            except OutOfTime:
-                message = f"{file}: unknown: the time limit came before any division was found"
-                failed(Exit.STOPPED, message, status="unknown")
-            except CellcolorError as error:
-                named = isinstance(error, InputError) and error.file
-                failed(Exit.BAD_INPUT, str(error) if named else f"{file}: {error}")
-            else:
-                codes.append(_told(file, result, of_a_part, as_json))
-            if INTERRUPTS.seen:
-                break
+    for file, target in zip(files, targets, strict=True):
+        deadline, first = first or Deadline.after(seconds), None
+        try:
+            result, lines = _solve(file, deadline, tolerance, schemes, search)
+            if target is not None:
+                _write(target, result, lines, files, of_a_part)
+        except Interrupted:
+            failed(Exit.STOPPED, f"{file}: interrupted, nothing found yet")
+        except OutOfTime:
+            message = f"{file}: unknown: the time limit came before any division was found"
+            failed(Exit.STOPPED, message, status="unknown")
+        except CellcolorError as error:
+            named = isinstance(error, InputError) and error.file
+            failed(Exit.BAD_INPUT, str(error) if named else f"{file}: {error}")
+        else:
+            codes.append(_told(file, result, of_a_part, as_json))
+        if INTERRUPTS.seen:
+            break
     return worst([*codes, Exit.STOPPED] if len(codes) < len(files) else codes)
 
 
