@@ -19,7 +19,6 @@ from cellcolor.arrays import Array, Mask, unit
 from cellcolor.data.wording import count
 from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.arm.kinematics import frames_along
-from cellcolor.frontend.arm.notes import StandInReport, measured
 from cellcolor.frontend.contact.engine import meet
 from cellcolor.frontend.parts.cover import spread
 from cellcolor.frontend.parts.surface import Surface
@@ -63,7 +62,7 @@ class BuildReport:
             passed the most tests.
         cracks: number of mesh edges with a crack.
         notes: likely mistakes in robot and mesh, one sentence each.
-        stand_ins: what collides in the place of the meshes of links, and how far off it is.
+        stand_ins: what collides in the place of the meshes of links, in words.
         slivers: what the sliver policy did, None without one.
         injectivity: of an arm whose solutions have no names, what was found; None for others.
         rounding: over what the normals of a mesh are rounded; None for a shape that has its own.
@@ -82,7 +81,7 @@ class BuildReport:
     cracks: int
     seconds: Mapping[str, float]
     notes: tuple[str, ...]
-    stand_ins: tuple[StandInReport, ...] = ()
+    stand_ins: tuple[str, ...] = ()
     slivers: SliverReport | None = None
     injectivity: str | None = None
     rounding: str | None = None
@@ -91,8 +90,7 @@ class BuildReport:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Likely mistakes, one sentence each."""
-        hulls = (stand_in.warning for stand_in in self.stand_ins)
-        return self.survey.warnings + self.notes + tuple(text for text in hulls if text)
+        return self.survey.warnings + self.notes
 
     @property
     def nothing_covered(self) -> str | None:
@@ -170,6 +168,7 @@ def report_on(built: BuildResult) -> BuildReport:
     # Codes are in the order of the tests.
     farthest = verdicts.reasons.max(axis=1)[~reached]
     remarks = prepared.arm.kinematics.remarks(surface.vertices, -surface.normals)
+    hulls = tuple(each.warning for each in prepared.robot.stand_ins if each.warning)
     task = prepared.setup.task
     key = "contact_radius_m" if task.edge_radius_m is None else "edge_radius_m"
     rounding = f"rounded over {1e3 * task.rounding_m:g} mm (task.{key})"
@@ -184,8 +183,8 @@ def report_on(built: BuildResult) -> BuildReport:
         colors=_color_reports(surface, built.coloring, built.branches),
         cracks=len(built.coloring.cracks),
         seconds=built.seconds,
-        notes=prepared.notes + remarks,
-        stand_ins=tuple(map(measured, prepared.robot.stand_ins)),
+        notes=prepared.notes + remarks + hulls,
+        stand_ins=tuple(map(str, prepared.robot.stand_ins)),
         slivers=built.slivers_report,
         injectivity=None if prepared.arm.named else _INJECTIVE,
         rounding=rounding if surface.faceted else None,
@@ -278,7 +277,8 @@ def survey_of(prepared: PreparedScene) -> Survey:
     base = prepared.robot.base_frame(None)[:3, 3]
     found = survey(prepared.surface, prepared.arm.kinematics.viewpoints, base)
     gravity = np.array(prepared.setup.task.gravity_m_per_s2)
-    if not prepared.part.open or not gravity.any():
+    solid = TriangleMesh(prepared.own_body.vertices, prepared.own_body.faces)
+    if not solid.border.any() or not gravity.any():
         return found
     mesh = prepared.surface.mesh
     down = mesh.triangle_normals @ unit(gravity) > _DOWN

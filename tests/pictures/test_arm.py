@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
+from assembled import load_robot
 from library import INSTANCES
 from numpy.typing import NDArray
 from pages import page_data, show, small_wok, solids
@@ -13,7 +14,6 @@ from pinocchio_reading import geometry_of
 from shipped import shipped
 
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.pictures.arm import draw_arm, surroundings

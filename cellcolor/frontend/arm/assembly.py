@@ -13,22 +13,15 @@ from cellcolor.arrays import Array
 from cellcolor.data.wording import looks_like_degrees
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.urdf import FIXED, PRISMATIC, Joint, Urdf, pose
+from cellcolor.frontend.tables import Vector
 
 _FLANGES = ("tool0", "flange", "ee_link", "tool_flange", "wrist_3_link", "link_6")  # of vendors
 
 FIX = "give its position under [robot.fixed_joints], as {} = 0.0"
 """What to do about a joint that may not move, by its name."""
 
-Vector = tuple[float, float, float]
 
-
-def mount(
-    arm: Urdf,
-    flange: str,
-    tool: Urdf,
-    position: Vector = (0.0, 0.0, 0.0),
-    rpy: Vector = (0.0, 0.0, 0.0),
-) -> Urdf:
+def mount(arm: Urdf, flange: str, tool: Urdf, position: Vector, rpy: Vector) -> Urdf:
     """The tool's tree fixed to the arm's flange link.
 
     Args:

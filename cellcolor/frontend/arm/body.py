@@ -5,12 +5,14 @@ Each engine makes of a shape what it works with.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
+import igl
 import numpy as np
 import pinocchio as pin
 import trimesh
@@ -20,7 +22,7 @@ from cellcolor.arrays import Array, Index
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.link_mesh import find_mesh, load_link_mesh
 from cellcolor.frontend.arm.urdf import LinkShape, Urdf
-from cellcolor.frontend.setup import MeshCollision
+from cellcolor.frontend.setup import MeshCollision, RobotFiles
 from cellcolor.mesh.triangle_mesh import grouped
 
 Kind = Literal[
@@ -160,7 +162,11 @@ class Body:
         return Shape(kind, (self.radius, self.length), rotation=turn, origin=middle)
 
 
-@dataclass(frozen=True)
+_SAMPLES = 5_000  # of a hull's surface
+_FAR = 0.02  # m; a hull that is farther off its mesh is warned of
+
+
+@dataclass(frozen=True, eq=False)
 class StandIn:
     """What collides in the place of a link's mesh.
 
@@ -176,6 +182,41 @@ class StandIn:
     vertices: Array
     faces: Index
     body: Body
+
+    @cached_property
+    def off_m(self) -> float:
+        """How far the farthest of many points on the hull is from the mesh; 0 of the mesh."""
+        if self.chosen == "exact":
+            return 0.0
+        surface = trimesh.Trimesh(self.body.shape.vertices, self.body.shape.faces, process=False)
+        points, _ = trimesh.sample.sample_surface(surface, _SAMPLES, seed=0)
+        squares = igl.point_mesh_squared_distance(points, self.vertices, self.faces)[0]
+        return math.sqrt(squares.max())
+
+    @property
+    def warning(self) -> str | None:
+        """For a hull that is far off its mesh: what to choose instead."""
+        if self.off_m <= _FAR:
+            return None
+        return (
+            f"{self.link!r}: the convex hull of {self.file.name} is {self._millimeters} mm off "
+            "the mesh, and fills what is hollow there: "
+            '"exact" collides as the mesh is (mesh_collision_of under [robot])'
+        )
+
+    def __str__(self) -> str:
+        if self.chosen == "hull":
+            return (
+                f"{self.link!r}: convex hull of {self.file.name}, up to {self._millimeters} mm off"
+            )
+        closed = trimesh.Trimesh(self.vertices, self.faces, process=False).is_watertight
+        open_ = "" if closed else "; it is open: what is all inside it goes unnoticed"
+        return f"{self.link!r}: {self.file.name}, as it is{open_}"
+
+    @property
+    def _millimeters(self) -> str:
+        """How far it is off, rounded down to a tenth."""
+        return f"{math.floor(1e4 * self.off_m) / 10:g}"
 
 
 def mesh_body(
@@ -240,37 +281,25 @@ def _is_cap(sphere: tuple[Array, float], point: Array, radius: float) -> bool:
     return abs(own - radius) < _SAME and float(np.linalg.norm(center - point)) < _SAME
 
 
-@dataclass(frozen=True)
-class Shapes:
-    """How the meshes of links collide, and where they are.
-
-    Attributes:
-        chosen: what stands for a link's mesh.
-        chosen_of: the same of some links by their names.
-        package_folders: packages, or folders that have some, for ``package://``.
-    """
-
-    chosen: MeshCollision = "hull"
-    chosen_of: Mapping[str, MeshCollision] = field(default_factory=dict)
-    package_folders: tuple[Path, ...] = ()
-
-
 def place_shapes(
-    whole: Urdf, model: pin.Model, shapes: Shapes
+    whole: Urdf, model: pin.Model, files: RobotFiles, folder: Path
 ) -> tuple[tuple[Body, ...], tuple[StandIn, ...]]:
     """Bodies of all links, base first, and what stands for the meshes among them.
 
     Args:
         whole: arm and tool as one tree.
         model: the joints that move, and a frame for each link.
+        files: what stands for a link's mesh, and where packages are.
+        folder: what the names of package folders are relative to.
 
     Raises:
         InputError: a mesh cannot be found or read.
     """
-    for name in shapes.chosen_of:
+    for name in files.mesh_collision_of:
         if name not in whole.links or all(s.kind != "mesh" for s in whole.links[name].shapes):
             message = "no such link with a mesh for collisions"
             raise InputError(None, f"robot.mesh_collision_of.{name}", message)
+    packages = [folder / name for name in files.package_folders]
     bodies: list[Body] = []
     stand_ins: list[StandIn] = []
     for name, link in whole.links.items():
@@ -285,9 +314,9 @@ def place_shapes(
                 bodies.append(_solid_body(name, joint, solid))
             elif shape.kind == "mesh":
                 place = f"link[{name}].collision[{number}].mesh"
-                file = find_mesh(shape.mesh, link.file, place, link.folder, shapes.package_folders)
+                file = find_mesh(shape.mesh, link.file, place, link.folder, packages)
                 vertices, faces = load_link_mesh(file, shape.sizes)
-                chosen = shapes.chosen_of.get(name, shapes.chosen)
+                chosen = files.mesh_collision_of.get(name, files.mesh_collision)
                 own_mesh = (vertices @ at.rotation.T + at.translation, faces)
                 stand_ins.append(mesh_body(name, joint, file, *own_mesh, chosen))
                 bodies.append(stand_ins[-1].body)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.kinematics import Poses, forward
+from cellcolor.frontend.arm.kinematics import Poses, farthest_reach, forward, nearest_points
 from cellcolor.frontend.arm.robot import FREE_TURN, GIVEN_TURN, Robot, TaskSpace
 from cellcolor.frontend.setup import RobotFiles
 from cellcolor.frontend.tables import Registry
@@ -117,21 +117,6 @@ MUST_LIE = (
 """What a tool beside the last axis is refused with."""
 
 
-def locked_angle(robot: Robot, files: RobotFiles) -> float:
-    """The angle in rad at which a setup locks the last joint.
-
-    Raises:
-        InputError: there is none, or it is outside the joint's limits.
-    """
-    locked = files.locked_joint_6_rad
-    if locked is None:
-        raise InputError(None, "robot.locked_joint_6_rad", "is missing")
-    if not robot.lower[-1] <= locked <= robot.upper[-1]:
-        message = "outside the limits of the sixth joint"
-        raise InputError(None, "robot.locked_joint_6_rad", message)
-    return locked
-
-
 def check_lever(robot: Robot, files: RobotFiles, lever: float, arm: float) -> None:
     """Refuse a tool whose tip is farther from the wrist than an arm is long, both in m.
 
@@ -181,3 +166,41 @@ def check_tool_on_last_axis(robot: Robot, poses: Poses, kind: str) -> None:
         f"{kind}: {MUST_LIE}; the tip is {off:.3g} mm off it, the axis {turned:.3g} degrees "
         "(mount_position_m and mount_rpy_rad under [robot] move the tool)",
     )
+
+
+class SixRevolute(InverseKinematics):
+    """An arm of six revolute joints; joint 6, which the task leaves free, is locked."""
+
+    joints = 6
+
+    def __init__(self, robot: Robot, files: RobotFiles, kind: str) -> None:
+        """The arm, and the angle of the locked joint.
+
+        Args:
+            kind: what an arm is not whose tool is beside the last axis, for the message.
+        """
+        locked = files.locked_joint_6_rad
+        if locked is None:
+            raise InputError(None, "robot.locked_joint_6_rad", "is missing")
+        if not robot.lower[-1] <= locked <= robot.upper[-1]:
+            message = "outside the limits of the sixth joint"
+            raise InputError(None, "robot.locked_joint_6_rad", message)
+        self._robot, self._locked, self._poses = robot, locked, pose_at_zero(robot)
+        check_tool_on_last_axis(robot, self._poses, kind)
+
+    def _set_sizes(self, files: RobotFiles, directions: Array, points: Array) -> None:
+        """Reach, lever and viewpoints of an arm with these axes; refused if the tool is too long.
+
+        Args:
+            directions, points: (6, 3) along the axes, and in m on them, all joints at zero.
+        """
+        lines = list(zip(points, directions, strict=True))
+        shoulder, wrist = (
+            nearest_points(*lines[0], *lines[1])[0],
+            nearest_points(*lines[5], *lines[4])[0],
+        )
+        self.reach = farthest_reach(self._robot, shoulder)
+        self.lever = float(np.linalg.norm(self._poses.tip[0] - wrist))
+        check_lever(self._robot, files, self.lever, self.reach - self.lever)
+        up = directions[0] * (-1.0 if directions[0, 2] < 0 else 1.0)
+        self.viewpoints = np.array([shoulder, shoulder + (self.reach - self.lever) * up])

@@ -9,11 +9,12 @@ import numpy as np
 import pinocchio as pin
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.assembly import FIX, Vector, mount, pinocchio_model, settled
-from cellcolor.frontend.arm.body import Body, Shapes, place_shapes
+from cellcolor.frontend.arm.assembly import FIX, mount, pinocchio_model, settled
+from cellcolor.frontend.arm.body import Body, place_shapes
 from cellcolor.frontend.arm.notes import notes_on_tool
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.urdf import FIXED, PRISMATIC, Joint, Urdf, load_urdf
+from cellcolor.frontend.arm.urdf import FIXED, PRISMATIC, Joint, Urdf
+from cellcolor.frontend.setup import RobotFiles
 
 _FASTEST = 60.0  # rad/s
 _MOST_DEGREES = 800.0  # per second; beyond, as 1000, a velocity means that there is no limit
@@ -26,50 +27,44 @@ _WAY_OUT = (
 
 
 def load_robot(
-    arm: Path | Urdf,
-    flange_link: str,
-    tool: Path | Urdf,
-    tip_link: str,
+    arm: Urdf,
+    tool: Urdf,
+    files: RobotFiles,
     joints: int = 6,
-    *,
-    mounted: tuple[Vector, Vector] = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
-    fixed_joints: Mapping[str, float] | None = None,
-    shapes: Shapes | None = None,
-    may_touch: tuple[tuple[str, str], ...] = (),
-    force: bool = True,
     prismatic: int = 0,
+    *,
+    folder: Path = Path(),
+    force: bool = True,
 ) -> Robot:
-    """Put the tool on the arm's flange, both from files or as they have been read.
+    """Put the tool on the arm's flange.
 
     Args:
-        mounted: position in m and angles in rad (extrinsic x, y, z) of the tool's root link in the
-            frame of the flange link.
-        fixed_joints: positions of joints that do not move, rad, or m of prismatic ones.
-        shapes: how meshes collide; as hulls without it.
+        files: how, which joints stand still, and what collides.
+        joints: how many there are between base and tip, the prismatic ones included.
+        folder: what the names of package folders are relative to.
         force: whether forces are asked for, so that masses and efforts have to be known.
 
     Raises:
-        InputError: a fault in either URDF (see :mod:`cellcolor.frontend.arm.urdf`), no such tip
-            link, not so many joints of either kind between base and tip, one elsewhere that moves,
-            one that follows it, or a mesh that cannot be found or read.
+        InputError: no such flange or tip link, not so many joints of either kind between base and
+            tip, one elsewhere that moves, one that follows it, or a mesh that cannot be found or
+            read.
     """
-    arm, tool = (given if isinstance(given, Urdf) else load_urdf(given) for given in (arm, tool))
-    positions = fixed_joints or {}
-    for name in positions:
+    for name in files.fixed_joints:
         joint = arm.joints.get(name, tool.joints.get(name))
         if joint is None or joint.kind == FIXED:
             message = "no such joint in arm and tool, or a fixed one"
             raise InputError(None, f"robot.fixed_joints.{name}", message)
-    if tip_link not in tool.links:
-        raise InputError(str(tool.file), f"link[{tip_link}]", "the tip link is not in the tool")
-    whole = mount(arm, flange_link, tool, *mounted)
-    standing = settled(whole, positions)
-    _check_chain(whole, standing, tool, tip_link, (joints - prismatic, prismatic))
+    if files.tip_link not in tool.links:
+        message = "the tip link is not in the tool"
+        raise InputError(str(tool.file), f"link[{files.tip_link}]", message)
+    whole = mount(arm, files.flange_link, tool, files.mount_position_m, files.mount_rpy_rad)
+    standing = settled(whole, files.fixed_joints)
+    _check_chain(whole, standing, tool, files.tip_link, (joints - prismatic, prismatic))
     for fault in weight_faults(whole, standing) if force else ():
         raise InputError(fault.file, fault.field, f"{fault.message} ({_NO_FORCE})")
     model = pinocchio_model(whole, standing)
-    bodies, stand_ins = place_shapes(whole, model, shapes or Shapes())
-    tip = model.frames[model.getFrameId(tip_link, pin.FrameType.BODY)]
+    bodies, stand_ins = place_shapes(whole, model, files, folder)
+    tip = model.frames[model.getFrameId(files.tip_link, pin.FrameType.BODY)]
     own = [whole.joints[name] for name in model.names[1:]]
     axes = np.array([joint.axis for joint in own]).reshape(-1, 3)
     return Robot(
@@ -85,9 +80,9 @@ def load_robot(
         center=np.array([each.lever for each in list(model.inertias)[1:]]),
         tip=np.array(tip.placement.homogeneous),
         bodies=bodies,
-        tested_pairs=_tested_pairs(whole, bodies, may_touch),
+        tested_pairs=_tested_pairs(whole, bodies, files.may_touch),
         joint_names=tuple(joint.name for joint in own),
-        warnings=_warnings(whole, own) + notes_on_tool(model, tool.root, tip_link, axes),
+        warnings=_warnings(whole, own) + notes_on_tool(model, tool.root, files.tip_link, axes),
         model=model,
         stand_ins=stand_ins,
         tool_links=frozenset(link.name for link in tool.links.values() if link.shapes),

@@ -316,13 +316,13 @@ def _shape(field: str, collision: ET.Element) -> LinkShape:
 
 def _joint(name: str, xml: ET.Element, file: Path, links: Collection[str]) -> Joint:
     field, kind = f"joint[{name}]", xml.get("type", "")
-    ends = [_given(xml, end).get("link", "") for end in ("parent", "child")]
-    for end, link in zip(("parent", "child"), ends, strict=True):
+    parent, child = (_given(xml, end).get("link", "") for end in ("parent", "child"))
+    for end, link in (("parent", parent), ("child", child)):
         if link not in links:
             raise InputError(None, f"{field}.{end}", f"no link {link!r}")
     place = _origin(field, xml)
     if kind == FIXED:
-        return Joint(name, file, *ends, place)
+        return Joint(name, file, parent, child, place)
     if kind not in _MOVING:
         message = f"{kind!r}: only revolute, continuous, prismatic and fixed joints"
         raise InputError(None, f"{field}.type", message)
@@ -348,7 +348,8 @@ def _joint(name: str, xml: ET.Element, file: Path, links: Collection[str]) -> Jo
     return Joint(
         name,
         file,
-        *ends,
+        parent,
+        child,
         place,
         kind=kind,
         axis=unit(axis),

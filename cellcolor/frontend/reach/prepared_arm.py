@@ -13,7 +13,6 @@ from cellcolor.configurations.matching import CIRCLE
 from cellcolor.data.wording import looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
-from cellcolor.frontend.arm.body import Shapes
 from cellcolor.frontend.arm.inverse import (
     KINEMATICS,
     InverseKinematics,
@@ -163,22 +162,9 @@ def _robot(setup: Setup) -> Robot:
     arm = _urdf(files.arm_urdf, "arm_urdf", folder)
     tool = _urdf(files.tool_urdf, "tool_urdf", folder)
     family = _family(setup)
+    force = setup.constraints.force
     robot = load_robot(
-        arm,
-        files.flange_link,
-        tool,
-        files.tip_link,
-        family.joints,
-        mounted=(files.mount_position_m, files.mount_rpy_rad),
-        fixed_joints=files.fixed_joints,
-        shapes=Shapes(
-            files.mesh_collision,
-            files.mesh_collision_of,
-            tuple(folder / name for name in files.package_folders),
-        ),
-        may_touch=files.may_touch,
-        force=setup.constraints.force,
-        prismatic=family.prismatic,
+        arm, tool, files, family.joints, family.prismatic, folder=folder, force=force
     )
     # The frame on the surface, z into it, is ahead of the tip link, and turned back.
     contact, task = np.eye(4), setup.task

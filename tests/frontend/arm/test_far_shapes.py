@@ -6,11 +6,11 @@ import re
 from pathlib import Path
 
 import pytest
+from assembled import load_robot
 from shipped import ROBOTS, TOP
 
 from cellcolor.errors import InputError
 from cellcolor.frontend import Scene
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.notes import notes_on_shapes
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.prepared import prepare

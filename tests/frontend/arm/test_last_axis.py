@@ -14,6 +14,7 @@ import dh_arms
 import numpy as np
 import pinocchio as pin
 import pytest
+from assembled import load_robot
 from independent import wrapped
 from shipped import ROBOTS
 
@@ -21,7 +22,6 @@ from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics, check_tool_on_last_axis
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.arm.urdf import parse_urdf
@@ -163,7 +163,7 @@ def test_a_tool_that_no_joint_can_tilt_must_not_be_tilted(family: str) -> None:
 
 def mounted(position: tuple[float, float, float], rpy: tuple[float, float, float]) -> Robot:
     files = (ROBOTS / "ur5.urdf", "wrist_3_link", ROBOTS / "polishing_tool.urdf", "tool_tip")
-    return load_robot(*files, mounted=(position, rpy))
+    return load_robot(*files, mount_position_m=position, mount_rpy_rad=rpy)
 
 
 def check(robot: Robot) -> None:

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembled import load_robot
 from pinocchio_reading import geometry_of
 from shipped import ROBOTS
 from world import NEIGHBORS, PAIRS, World
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import ur_geometry
 
