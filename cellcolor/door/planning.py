@@ -301,12 +301,10 @@ def _answered(
     for name in (name for name in _QUESTIONS if name in names):
         try:
             answers.append(ways[name]())
+            if not answers[-1].complete:
+                unanswered.append(f"{name}: answered in part, the time limit came first")
         except OutOfTime:
             unanswered.append(f"{name}: not answered, the time limit came first")
-            continue
         except InputError as error:  # the motion is planned and judged all the same
             unanswered.append(f"{name}: not answered: {error}")
-            continue
-        if not answers[-1].complete:
-            unanswered.append(f"{name}: answered in part, the time limit came first")
     return AnsweredScene(subject.surface, subject.decomposition, tuple(answers)), tuple(unanswered)
