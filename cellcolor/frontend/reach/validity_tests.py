@@ -122,6 +122,7 @@ class Postures:
     def __len__(self) -> int:
         return len(self.configurations)
 
+
 class ValidityTest(Table):
     """A test that candidates pass or fail.
 
