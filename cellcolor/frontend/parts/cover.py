@@ -12,7 +12,6 @@ from typing import Annotated, Self
 import igl
 import numpy as np
 from pydantic import Field, FiniteFloat, field_validator, model_validator
-from trimesh.triangles import closest_point
 
 from cellcolor.arrays import Array, Index, Mask, angles_between
 from cellcolor.data.wording import count
@@ -43,15 +42,17 @@ def thickness(mesh: TriangleMesh) -> float | None:
     """Of a shell, the median distance in m from one side to the other behind it; None of others."""
     size = float(np.linalg.norm(np.ptp(mesh.points, axis=0)))
     inward = -np.nan_to_num(mesh.triangle_normals)
-    middles = mesh.points[mesh.corners].mean(axis=1)
-    within = mesh.lengths[mesh.edge_of_side].max(axis=1) + _THIN * size
-    behind = np.full(_POINTS, np.inf)
-    for row, (point, face) in enumerate(zip(*spread(mesh, _POINTS), strict=True)):
-        # What lies behind has its own outside on the other side.
-        near = np.linalg.norm(middles - point, axis=1) <= within
-        others = mesh.corners[near & (inward @ inward[face] < -0.5)]
-        hits = igl.ray_mesh_intersect(point, inward[face], mesh.points, others)
-        behind[row] = hits[0][1] if hits else np.inf
+    points, face = spread(mesh, _POINTS)
+    tree = igl.AABB()
+    tree.init(mesh.points, mesh.corners)
+    hits = tree.intersect_ray(mesh.points, mesh.corners, points, inward[face])
+    # What lies behind has its own outside on the other side.
+    behind = np.array(
+        [
+            min((way for other, way, *_ in own if inward[other] @ into < -0.5), default=np.inf)
+            for own, into in zip(hits, inward[face], strict=True)
+        ]
+    )
     found = behind <= _THIN * size
     return float(np.median(behind[found])) if found.mean() >= _MOSTLY else None
 
@@ -69,9 +70,8 @@ def spread(mesh: TriangleMesh, count: int) -> tuple[Array, Index]:
 
 def between_sharp(mesh: TriangleMesh, sharp_rad: float) -> Index:
     """The number of the piece (m,) that each face is in; sharp edges part them."""
-    edges, sides = mesh.pairs
     sharp = np.zeros(len(mesh.edges), dtype=bool)
-    sharp[edges] = angles_between(*(mesh.triangle_normals[s // 3] for s in sides.T)) > sharp_rad
+    sharp[mesh.sharp_edges(sharp_rad)] = True
     return mesh.parts(sharp)
 
 
@@ -231,10 +231,10 @@ class Cover(Table):
             chosen &= part == np.argsort(-area, kind="stable")[self.component]
         if self.region is not None:
             # On the same side of all sharp edges as the face nearest to the seed.
-            corners, seed = whole.vertices[whole.faces], np.array(self.region.seed_m)
-            nearest = closest_point(corners, np.tile(seed, (len(corners), 1)))
             part = between_sharp(whole.mesh, self.region.sharp_rad)
-            chosen &= part == part[np.argmin(np.linalg.norm(nearest - seed, axis=1))]
+            seed = np.array([self.region.seed_m])
+            face = igl.point_mesh_squared_distance(seed, whole.vertices, whole.faces)[1][0]
+            chosen &= part == part[face]
         if self.faces_file is not None:
             chosen &= _listed(folder / self.faces_file, len(chosen))
         return chosen
