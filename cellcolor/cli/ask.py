@@ -33,23 +33,18 @@ _RANGE = Numbers("a range is two numbers LOW,HIGH", 2)
 _MOST_STOPS = 1000
 
 
-class Stops(click.ParamType):  # type: ignore[type-arg]
-    """A joint and where it may stand: its name, and evenly spaced positions up to the last."""
-
-    name = "JOINT=FROM:TO:STEP"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Split at the sign of equality and the colons."""
-        joint, _, spaced = str(value).partition("=")
-        try:
-            low, high, step = map(float, spaced.split(":"))
-            count = (high - low) / step
-        except (ValueError, ZeroDivisionError):
-            count = -1.0
-        if not joint or not 0 <= count <= _MOST_STOPS:
-            asked = f"stops are {self.name}, at most {_MOST_STOPS}, as in rail_joint=0:2:0.25"
-            self.fail(f"{asked}, is {value!r}.", param, ctx)
-        return joint, tuple(low + step * number for number in range(int(count + 1e-9) + 1))
+def stops_of(text: str) -> tuple[str, tuple[float, ...]]:
+    """A joint and where it may stand: evenly spaced positions up to the last."""
+    joint, _, spaced = text.partition("=")
+    try:
+        low, high, step = map(float, spaced.split(":"))
+        count = (high - low) / step
+    except (ValueError, ZeroDivisionError):
+        count = -1.0
+    if not joint or not 0 <= count <= _MOST_STOPS:
+        asked = f"stops are JOINT=FROM:TO:STEP, at most {_MOST_STOPS}, as in rail_joint=0:2:0.25"
+        raise click.BadParameter(f"{asked}, is {text!r}.")
+    return joint, tuple(low + step * number for number in range(int(count + 1e-9) + 1))
 
 
 def _print(file: Path, rows: Iterable[dict[str, Any]], text: object, as_json: bool) -> None:
@@ -167,9 +162,10 @@ def place(
 )
 @option(
     "--stops",
-    Stops(),
+    stops_of,
     "Where a joint that carries the arm, such as a rail, may stand while the tool works: m or rad. "
     "May be given once for each such joint.",
+    metavar="JOINT=FROM:TO:STEP",
     multiple=True,
 )
 @keywords(cover=SHARE, change_over=float)

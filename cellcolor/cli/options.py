@@ -145,26 +145,22 @@ class Numbers(click.ParamType):  # type: ignore[type-arg]
         return numbers
 
 
-class _Input(click.Path):
-    """A file to be read, or the name of a shipped one."""
+def _input(name: str) -> Path:
+    """A file to be read, or a shipped one by its name."""
+    from cellcolor.door.installed import find_file
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
-        from cellcolor.door.installed import find_file
-
-        return find_file(str(super().convert(value, param, ctx)))
+    return find_file(name)
 
 
-def _place(_context: click.Context, option: click.Parameter, value: str | None) -> Any:
+def _place(text: str) -> Any:
     """A place on a surface; the module that reads it is imported where one is given."""
-    if value is None:
-        return None
     from cellcolor.questions.places import read_place
 
-    return read_place(value, option.opts[0])
+    return read_place(text, "--left-alone")
 
 
 PATH = click.Path(path_type=Path)
-INPUT = _Input()
+INPUT = _input
 COUNT = click.IntRange(1)
 SHARE = Real(0, 1)
 LENGTH = Real(0, min_open=True)
@@ -212,11 +208,10 @@ def json_option(printed: str) -> Decorator:
 
 LEFT_ALONE = option(
     "--left-alone",
-    str,
+    _place,
     "What must not be covered: a box x,y,z,x,y,z (lowest and highest corner, m), a JSON file with "
     "a mask, or a labelled surface, for what it gives up.",
     metavar="PLACE",
-    callback=_place,
 )
 TOLERANCE = option(
     "--tolerance",

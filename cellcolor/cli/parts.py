@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -31,33 +31,13 @@ _UNIT = keywords(unit=click.Choice(["m", "mm", "cm", "in"]))
 _JSON = json_option("One JSON object.")
 
 
-class FixedJoint(click.ParamType):  # type: ignore[type-arg]
+def _fixed(text: str) -> tuple[str, float]:
     """``rail_joint=0.4``: a joint and its position."""
-
-    name = "JOINT=POSITION"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[str, float]:
-        """Split at the last sign of equality."""
-        joint, _, position = str(value).rpartition("=")
-        try:
-            at = float(position)
-        except ValueError:
-            at = math.nan
-        if not joint or not math.isfinite(at):
-            self.fail(f"{value!r} is not JOINT=POSITION, as rail_joint=0.4", param, ctx)
-        return joint, at
-
-
-def _once(given: Iterable[tuple[str, float]]) -> dict[str, float]:
-    """The position of each joint, which may be given once."""
-    found: dict[str, float] = {}
-    for joint, position in given:
-        if joint in found:
-            raise InputError(None, "--fix", f"{joint} is given twice")
-        found[joint] = position
-    return found
+    joint, _, position = text.rpartition("=")
+    with suppress(ValueError):
+        if joint and math.isfinite(float(position)):
+            return joint, float(position)
+    raise click.BadParameter(f"{text!r} is not JOINT=POSITION, as rail_joint=0.4")
 
 
 @cellcolor.command(of=("door.parts:inspect",))
@@ -137,9 +117,10 @@ def repair(part: Path, output: Path, as_json: bool, **wanted: Any) -> Exit:
 @keywords(flip=bool, cover=click.Choice(["largest", "all"]))
 @option(
     "--fix",
-    FixedJoint(),
+    _fixed,
     "Where a joint stands still, rad, or m of a rail. May be given several times.  [default: rails "
     "and joints beside the chain at 0]",
+    metavar="JOINT=POSITION",
     multiple=True,
 )
 @TIME_LIMIT
@@ -155,7 +136,7 @@ def new(
     from cellcolor.door.starting import new as begin
 
     with at_work(part, "beginning") as tell:
-        made = begin(part, arm, output, fix=_once(fix), progress=tell, **wanted)
+        made = begin(part, arm, output, fix=dict(fix), progress=tell, **wanted)
     say(f"wrote {made.scene} and its setup: {made.reachable_share:.0%} of the part can be reached")
     for note in made.notes:
         say(f"  {note}")

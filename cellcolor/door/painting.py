@@ -150,9 +150,10 @@ def cover(
 
 def _unit_rows(normals: Any, count: int) -> Array:
     """Normals of length 1."""
-    from cellcolor.data.value import THREES
+    from cellcolor.data.value import RowsOfThree, adapter_of
+    from cellcolor.files.validation import validated
 
-    rows = THREES.of(normals, "normals")
+    (rows,) = validated(adapter_of(tuple[RowsOfThree]), (normals,), ("normals",))
     if len(rows) != count:
         raise InputError(None, "normals", f"has {len(rows)} entries for {count} vertices")
     lengths = np.linalg.norm(rows, axis=1)

@@ -68,7 +68,7 @@ def best_place(
             if prepared is None:
                 prepared = prepare(scene.varied(placement=place), deadline)
             else:
-                prepared = prepared.at(place)
+                prepared = prepared.at(prepared.scene.varied(placement=place))
         except InputError as error:  # such as a part that would stand in the robot
             fault = error
             continue

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from trimesh.util import append_faces
 
 from cellcolor.arrays import Array, Index
 from cellcolor.data.candidate_table import VALID
@@ -46,7 +47,10 @@ def draw_arm(build: BuildResult, vertex: int, branch: int) -> Picture3D:
     for body in robot.bodies:
         links.setdefault(body.link, []).append(_placed(body, poses))
     fills = link_fills(robot)
-    layers = [Layer(link, fills[link], *_joined(meshes)) for link, meshes in links.items()]
+    layers = [
+        Layer(link, fills[link], *append_faces(*zip(*meshes, strict=True)))
+        for link, meshes in links.items()
+    ]
     arm = np.concatenate([layer.points for layer in layers])
     layers.append(Layer("object", FAINT, build.surface.vertices, build.surface.faces))
     layers += surroundings(build.prepared)
@@ -100,7 +104,7 @@ def surroundings(prepared: PreparedScene) -> list[Layer]:
     if scene.obstacle:
         shells = [(each, *each.shell(scene.folder)) for each in scene.obstacle]
         meshes = [(each.placed(points), triangles) for each, points, triangles in shells]
-        layers.append(Layer("obstacles", OBSTACLE, *_joined(meshes)))
+        layers.append(Layer("obstacles", OBSTACLE, *append_faces(*zip(*meshes, strict=True))))
     return layers
 
 
@@ -127,11 +131,3 @@ def grid(ground: Shape, points: Array) -> SpaceLines:
     along_x = np.stack([knots[:-1], knots[1:]], axis=2).reshape(-1, 2, 3)
     along_y = np.stack([knots[:, :-1], knots[:, 1:]], axis=2).reshape(-1, 2, 3)
     return SpaceLines("ground", GROUND, np.concatenate([along_x, along_y]))
-
-
-def _joined(meshes: list[_Mesh]) -> _Mesh:
-    counts = np.cumsum([0, *[len(points) for points, _ in meshes[:-1]]])
-    return (
-        np.concatenate([points for points, _ in meshes]),
-        np.concatenate([t + first for (_, t), first in zip(meshes, counts, strict=True)]),
-    )

@@ -343,7 +343,6 @@ def test_an_arm_on_a_rail_stands_still(
 @pytest.mark.parametrize(
     ("fix", "message"),
     [
-        ("rail_joint=0 --fix rail_joint=1", "--fix: rail_joint is given twice"),
         ("rail_joint=4", "4 is outside the joint's limits"),
         ("rail=0.4", "robot.fixed_joints.rail: no such joint"),
         ("rail_joint", "'rail_joint' is not JOINT=POSITION"),

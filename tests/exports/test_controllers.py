@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -12,16 +11,14 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 import pytest
-import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 from read_programs import READERS, Program
-from scipy.interpolate import BPoly
 from scipy.spatial.transform import Rotation, Slerp
 from shipped import ROBOTS
 from stand_in import stand_in
+from waves import arm, driven, on
 
-from cellcolor.data.trajectory import Trajectory
 from cellcolor.errors import InputError
 from cellcolor.exports.interface import PlannedMotion
 from cellcolor.exports.programs import ASIDE, BESIDE, PRESSED, WITHIN
@@ -39,40 +36,6 @@ PROGRAMS = {
     "cellcolor.ls": "kr6",
 }
 FANUC_ON_KR6 = {"cellcolor.ls": {"controller": Controller(language="fanuc")}}
-
-
-@cache
-def arm(name: str) -> Robot:
-    return prepare_arm(setup_of(name)).robot
-
-
-def setup_of(name: str) -> Setup:
-    (setup, *_) = sorted(ROBOTS.glob(f"{name}*.toml"), key=lambda path: len(path.name))
-    return Setup.read(setup)
-
-
-def on(robot: Robot, setup: Setup) -> dict[str, Any]:
-    """What exports know of an arm."""
-    flange, base = robot.frame_of(setup.robot.flange_link), robot.base_frame(None)
-    return {"robot": robot, "flange": flange, "base": base}
-
-
-def driven(
-    name: str, seed: int = 0, unplanned: tuple[int, ...] = (), **keys: object
-) -> PlannedMotion:
-    """A motion of an arm that nobody planned: waves, the tool on the surface now and then."""
-    random, robot = np.random.default_rng(seed), arm(name)
-    count = 60
-    times = np.cumsum(random.uniform(0.005, 0.2, count))
-    shape = random.uniform(0.1, 0.6, robot.joints), random.uniform(0.2, 1.0, robot.joints)
-    joints = shape[0] * np.sin(times[:, None] * shape[1] + random.uniform(0, 6, robot.joints))
-    contact = (np.arange(count) % 30 > 5) & (np.arange(count) % 30 < 26)
-    trajectory = Trajectory(
-        "waves", robot.joint_names, times, joints, random.normal(size=(count, 3)),
-        np.tile([0.0, 0.0, 1.0], (count, 1)), contact, np.where(contact, 0, -1), unplanned,
-    )  # fmt: skip
-    keys = on(robot, setup_of(name)) | {"controller": setup_of(name).controller} | keys
-    return PlannedMotion(trajectory, **keys)
 
 
 def read(name: str, planned: PlannedMotion) -> Program:
@@ -390,36 +353,3 @@ def test_where_there_is_no_program_the_reason_is_said(robot: str, change: str, r
 def test_a_table_that_cannot_be_used_is_refused(keys: dict[str, Any], fault: str) -> None:
     with pytest.raises(InputError, match=fault):
         Controller(**keys)
-
-
-@given(st.integers(0, 10**6), st.sampled_from([0.004, 0.0133, 0.1]))
-@examples(20)
-def test_a_fixed_step_follows_the_cubic_between_samples(seed: int, step: float) -> None:
-    planned = driven("ur5", seed)
-    trajectory = planned.trajectory
-    (own,), (judged,) = stretches(trajectory, step), stretches(trajectory)
-    assert np.allclose(np.diff(own.times), step)
-    assert 0 <= own.times[-1] - judged.times[-1] < step
-    ends = np.stack([judged.joints, judged.velocities], axis=1)
-    cubic = BPoly.from_derivatives(judged.times, ends)
-    inside = np.minimum(own.times, judged.times[-1])
-    assert np.allclose(own.joints, cubic(inside), atol=1e-9)
-    assert np.allclose(own.velocities, cubic.derivative()(inside), atol=1e-7)
-    straight = np.array([np.interp(inside, judged.times, j) for j in judged.joints.T]).T
-    assert own.beside == pytest.approx(np.abs(own.joints - straight).max(), abs=1e-9)
-    expected = np.interp(inside, judged.times, trajectory.contact) == 1
-    assert np.array_equal(own.contact, expected)
-
-
-def test_messages_have_the_fixed_step_and_accelerations() -> None:
-    planned = driven("ur5", step_s=0.01)
-    (message,) = yaml.safe_load_all(exported(planned)["joint_trajectory.yaml"])
-    times = [
-        point["time_from_start"]["sec"] * 10**9 + point["time_from_start"]["nanosec"]
-        for point in message["points"]
-    ]
-    assert set(np.diff(times)) == {10_000_000}
-    speeds = np.array([point["velocities"] for point in message["points"]])
-    faster = np.array([point["accelerations"] for point in message["points"]])
-    assert np.allclose(faster[1:-1], (speeds[2:] - speeds[:-2]) / 0.02, atol=1e-6)
-    assert not faster[[0, -1]].any()

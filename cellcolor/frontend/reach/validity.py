@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -129,12 +128,6 @@ class Judge:
             tracked.reshape(points, *shape, 3),
             self.reason_names,
         )
-
-    def only(self, names: frozenset[str]) -> Judge:
-        """The same judge, with the tests of these names only."""
-        judge = copy(self)
-        judge._tests = tuple(test for test in self._tests if test.name in names)
-        return judge
 
     def _first_failures(self, postures: Postures) -> NDArray[np.uint8]:
         """The code (k,) of the first test that each posture fails."""
