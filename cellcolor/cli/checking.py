@@ -29,7 +29,7 @@ from cellcolor.data.verdicts import (
 from cellcolor.data.wording import count, lift_offs_of, segments_and_lift_offs
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.installed import find_claim, find_file
-from cellcolor.door.reading import format_of_claim, read_trajectory
+from cellcolor.door.reading import format_of_claim, read_claim
 from cellcolor.door.subject import Subject
 from cellcolor.errors import CellcolorError, InputError, naming
 from cellcolor.files.writing import is_folder_or_nothing
@@ -270,7 +270,7 @@ def _described(name: str, verdict: Verdict) -> PlanVerdict:
 def _check_trajectory(request: Request, claim: Path) -> Exit:
     from cellcolor.door.judging import judge_trajectory
 
-    given = read_trajectory(claim)
+    given = read_claim(claim, (Trajectory,))
     with naming(name_of(request.claim)):
         subject = request.opened(request.deadline)
         with at_work(Path(request.claim), "judging") as report:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from dataclasses import MISSING, dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields
 from functools import cache
 from os import PathLike
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
@@ -18,7 +18,7 @@ from pydantic import (
     TypeAdapter,
     ValidationError,
 )
-from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema, to_jsonable_python
 
 from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import (
@@ -146,34 +146,26 @@ class AboutAFile(Document):
 
 def members_of(value: Any, always: Collection[str] = ()) -> dict[str, Any]:
     """The members of a dataclass as JSON has them, without those left at their defaults."""
-    found = {}
-    for member in fields(value):
-        content, default = getattr(value, member.name), member.default
-        if member.default_factory is not MISSING:
-            default = member.default_factory()
-        if member.name in always or default is MISSING or content != default:
-            found[member.name.rstrip("_")] = _plain(content)
-    return found
+    adapter = adapter_of(type(value))
+    given = adapter.dump_python(value, mode="json", by_alias=True, exclude_defaults=True)
+    whole = adapter.dump_python(value, mode="json", by_alias=True)
+    return {
+        name: given.get(name, content)
+        for name, content in whole.items()
+        if name in given or name in always
+    }
 
 
 def named_members(value: Any, *names: str) -> dict[str, Any]:
     """Some members and properties of a dataclass as JSON has them, in this order."""
-    return {name: _plain(getattr(value, name)) for name in names}
+    found: dict[str, Any] = to_jsonable_python({name: getattr(value, name) for name in names})
+    return found
 
 
 def every_member_of(value: Any) -> dict[str, Any]:
     """The members of a dataclass as JSON has them, and null for what is None."""
-    return {member.name: _plain(getattr(value, member.name), True) for member in fields(value)}
-
-
-def _plain(content: Any, whole: bool = False) -> Any:
-    if isinstance(content, np.ndarray):
-        return content.tolist()
-    if isinstance(content, tuple):
-        return [part if type(part) is int else _plain(part, whole) for part in content]
-    if is_dataclass(content):
-        return every_member_of(content) if whole else members_of(content)
-    return content
+    found: dict[str, Any] = adapter_of(type(value)).dump_python(value, mode="json")
+    return found
 
 
 class Drawn:
@@ -252,9 +244,11 @@ class ArrayOf:
         self, _source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
         form = handler.generate_schema(self.form)
+        listed = core_schema.plain_serializer_function_ser_schema(lambda own: own.tolist())
         return core_schema.json_or_python_schema(
             core_schema.no_info_after_validator_function(self._made, form),
             core_schema.no_info_wrap_validator_function(self._taken, form),
+            serialization=listed,
         )
 
     def _taken(self, content: Any, handler: Callable[[Any], Any]) -> NDArray[Any]:

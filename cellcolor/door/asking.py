@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from os import PathLike
@@ -116,13 +116,52 @@ def place(
         raise InputError(None, "jobs", f"must be 1 or more, is {jobs}")
     from cellcolor.questions.searching_places import search_places
 
-    minima = _Minima(asked, deadline, report)
     workers: AbstractContextManager[Workers | None] = nullcontext()
     if jobs > 1:
         workers = Workers(jobs)
     with workers as others:
-        alone, many = partial(minima, None), partial(minima, others)
-        return search_places(own, asked, alone, many, deadline, report)
+        minima = partial(_minima, others, asked, deadline)
+        return search_places(own, asked, minima, deadline, report)
+
+
+def _minima(
+    workers: Workers | None,
+    question: PlacementQuestion,
+    deadline: Deadline,
+    scene: Scene,
+    poses: Sequence[Pose],
+    cover: float | None,
+) -> Iterator[list[PlacedMinimum]]:
+    """The minima of placements in the order in which they are done, some at a time.
+
+    Args:
+        workers: the processes that compute; None for this one, which does a single one as well.
+        cover: as of :data:`~cellcolor.questions.searching_places.Minima`.
+
+    Raises:
+        CellcolorError: a task failed, or its process was lost in every attempt.
+    """
+    from cellcolor.questions.placing import minima_at
+
+    how = 1, question.seed, question.base, cover
+    size = min(_BATCH, -(-len(poses) // (1 if workers is None else workers.slots)) or 1)
+    lost = [poses[at : at + size] for at in range(0, len(poses), size)]
+    if workers is None or len(poses) == 1:
+        for part in lost:
+            yield minima_at(scene, part, deadline.left, *how)
+        return
+    for attempt in range(1, _ATTEMPTS + 1):
+        left = deadline.left
+        most = min(left, _ALL_DAY) + _ENDING
+        tasks = [(part, Task(minima_at, (scene, part, left, *how), most)) for part in lost]
+        lost = []
+        for part, ended in as_they_end(workers, tasks):
+            if ended.end in ("done", "timeout", "stopped"):
+                yield ended.value or []
+            elif ended.end == "failed" or attempt == _ATTEMPTS:
+                raise CellcolorError(f"placements could not be tried: {ended.error}")
+            else:  # the process was lost; the work is repeated
+                lost.append(part)
 
 
 def save_map(found: Placements, path: str | PathLike[str]) -> None:
@@ -138,87 +177,3 @@ def save_map(found: Placements, path: str | PathLike[str]) -> None:
         from cellcolor.pictures.static import render_placements
 
         write([Output(file, kind, [render_placements(found, file.suffix[1:])])])
-
-
-class _Minima:
-    """Computes the minima of placements, possibly in other processes, each of them once.
-
-    Args:
-        question: whether the arm's base is moved instead of the part, and the seed.
-        deadline: for everything together.
-        report: is told how many placements are done.
-    """
-
-    def __init__(
-        self, question: PlacementQuestion, deadline: Deadline, report: Callable[[str], None]
-    ) -> None:
-        self._question, self._deadline, self._report = question, deadline, report
-        self._known: dict[tuple[str, Pose], PlacedMinimum] = {}
-        self._done = 0
-
-    def __call__(
-        self,
-        workers: Workers | None,
-        scene: Scene,
-        mesh: str,
-        poses: Sequence[Pose],
-        cover: float | None = None,
-    ) -> list[PlacedMinimum]:
-        """A row for each placement, in order; fewer if the deadline comes first.
-
-        Args:
-            workers: the processes that compute; None for this one.
-            scene: its own placement does not matter.
-            mesh: the name of this scene's mesh.
-            cover: the share that is enough, for bounds where nothing better is known; the same for
-                all placements of a mesh. None for whole builds.
-
-        Raises:
-            OutOfTime: the deadline came before the first.
-            CellcolorError: a task failed, or its process was lost in every attempt.
-        """
-        self._deadline.check()
-        slots = 1 if workers is None else workers.slots
-        known = {
-            pose: row
-            for (its, pose), row in self._known.items()
-            if its == mesh and (cover is not None or not row.at_least)
-        }
-        new = [pose for pose in dict.fromkeys(poses) if pose not in known]
-        size = min(_BATCH, -(-len(new) // slots) or 1)
-        parts = [new[at : at + size] for at in range(0, len(new), size)]
-        for rows in self._asked(workers, scene, parts, cover):
-            known |= {row.pose: row for row in rows}
-            self._known |= {(mesh, row.pose): row for row in rows}
-            self._done += len(rows)
-            self._report(f"{self._done} placements")
-        return [known[pose] for pose in poses if pose in known]
-
-    def _asked(
-        self,
-        workers: Workers | None,
-        scene: Scene,
-        parts: Sequence[Sequence[Pose]],
-        cover: float | None,
-    ) -> Iterator[list[PlacedMinimum]]:
-        """The rows of each part, in the order in which the parts are done."""
-        from cellcolor.questions.placing import minima_at
-
-        how = 1, self._question.seed, self._question.base, cover
-        if workers is None:
-            for part in parts:
-                yield minima_at(scene, part, self._deadline.left, *how)
-            return
-        lost = list(parts)
-        for attempt in range(1, _ATTEMPTS + 1):
-            left = self._deadline.left
-            most = min(left, _ALL_DAY) + _ENDING
-            tasks = [(part, Task(minima_at, (scene, part, left, *how), most)) for part in lost]
-            lost = []
-            for part, ended in as_they_end(workers, tasks):
-                if ended.end in ("done", "timeout", "stopped"):
-                    yield ended.value or []
-                elif ended.end == "failed" or attempt == _ATTEMPTS:
-                    raise CellcolorError(f"placements could not be tried: {ended.error}")
-                else:  # the process was lost; the work is repeated
-                    lost.append(part)

@@ -11,15 +11,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import igl
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Mask, unit
+from cellcolor.arrays import Array, unit
 from cellcolor.data.wording import count
-from cellcolor.frontend.arm.body import Shape
-from cellcolor.frontend.arm.kinematics import frames_along
-from cellcolor.frontend.contact.engine import meet
 from cellcolor.frontend.parts.cover import spread
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
@@ -226,9 +223,8 @@ def _count_reasons(
 
 
 _POINTS = 500  # of the surface that are looked at
-_SHORT = 1e-3  # by this part of its length a line of sight ends before the surface
+_SHORT = 1e-3  # of a line of sight; what is first on it so near its end is its own point
 _DOWN = 0.5  # the cosine between a normal that faces down and gravity
-_THIN = 1e-7  # m; radius of a line of sight
 
 
 @dataclass(frozen=True)
@@ -293,38 +289,27 @@ def survey(surface: Surface, viewpoints: Array, base: Array) -> Survey:
         base: (3,) where the robot's base stands.
     """
     vertices, faces, mesh = surface.vertices, surface.faces, surface.mesh
-    nearest = trimesh.triangles.closest_point(vertices[faces], np.tile(base, (len(faces), 1)))
+    squared = igl.point_mesh_squared_distance(base[None], vertices, faces)[0]
     return Survey(
         tuple((vertices.max(axis=0) - vertices.min(axis=0)).tolist()),
-        float(np.linalg.norm(nearest - base, axis=1).min()),
+        float(np.sqrt(squared[0])),
         _from_behind(mesh, viewpoints) if mesh.border.any() else 0.0,
     )
 
 
 def _from_behind(mesh: TriangleMesh, viewpoints: Array) -> float:
     """The share of the visible points that are seen only from behind."""
-    vertices, faces = mesh.points, mesh.corners
     points, face = spread(mesh, _POINTS)
-    shape = Shape("mesh", vertices=vertices, faces=faces)
-    normals = mesh.area_vectors[face]
+    tree = igl.AABB()
+    tree.init(mesh.points, mesh.corners)
     seen, front = np.zeros((2, len(points)), dtype=bool)
     for eye in viewpoints:
-        visible = _visible(shape, eye, points)
+        sights = points - eye
+        first = tree.intersect_ray_first(mesh.points, mesh.corners, points - sights, sights)[1]
+        visible = first > 1 - _SHORT
         seen |= visible
-        front |= visible & (np.einsum("ij,ij->i", normals, eye - points) > 0)
+        front |= visible & (np.einsum("ij,ij->i", mesh.area_vectors[face], sights) < 0)
     return float((seen & ~front).sum() / max(seen.sum(), 1))
-
-
-def _visible(shape: Shape, eye: Array, points: Array) -> Mask:
-    """Whether nothing of the shape lies before points (k, 3) of it, (k,)."""
-    sights = (1 - _SHORT) * (points - eye)
-    turns, middles = frames_along(unit(sights)), eye + sights / 2
-    visible = np.zeros(len(points), dtype=bool)
-    for row, length in enumerate(np.linalg.norm(sights, axis=1).tolist()):
-        if length:
-            line = Shape("capsule", (_THIN, length), rotation=turns[row], origin=middles[row])
-            visible[row] = not meet(shape, line)
-    return visible
 
 
 def _meters(length: float) -> str:

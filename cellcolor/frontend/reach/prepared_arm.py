@@ -19,14 +19,14 @@ from cellcolor.frontend.arm.inverse import (
     is_tool_on_last_axis,
     pose_at_zero,
 )
-from cellcolor.frontend.arm.kinematics import Conditioning, conditioning, task_determinants
+from cellcolor.frontend.arm.kinematics import Conditioning, conditioning
 from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.newton import stacked
 from cellcolor.frontend.arm.robot import Robot, TaskSpace
 from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at
 from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
 from cellcolor.frontend.parts.placement import rotation_from_rpy
-from cellcolor.frontend.reach.smooth import Measure
+from cellcolor.frontend.reach.smooth import Measure, Tracker
 from cellcolor.frontend.setup import Setup
 from cellcolor.memory import chunks
 
@@ -115,7 +115,8 @@ class PreparedArm:
         deadline.check()
         found = self.follow(points, directions, branches)
         limits = self.conditioning if self.setup.constraints.conditioning else None
-        return found, task_determinants(self.robot, found, limits)
+        known = Tracker(self.robot, self.measure, limits).described(found)
+        return found, np.where(known.good, np.abs(known.determinants), np.nan)
 
 
 def prepare_arm(setup: Setup) -> PreparedArm:

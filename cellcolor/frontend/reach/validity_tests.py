@@ -122,16 +122,6 @@ class Postures:
     def __len__(self) -> int:
         return len(self.configurations)
 
-    @property
-    def tip(self) -> Array:
-        """(k, 3) where the tool's tip is, in the world, m."""
-        return self.poses.tip
-
-    @property
-    def tool_axis(self) -> Array:
-        """(k, 3) unit vectors from the flange to the tip, in the world."""
-        return self.poses.tool_axis
-
 
 class ValidityTest(Table):
     """A test that candidates pass or fail.
@@ -185,7 +175,7 @@ def _beyond_limits(postures: Postures) -> Mask:
 
 def _tip_blocked(postures: Postures) -> Mask:
     """At a vertex this is so for all branches that have a solution, or for none."""
-    return postures.workplace.tip.blocked(postures.tip, postures.tool_axis)
+    return postures.workplace.tip.blocked(postures.poses.tip, postures.poses.tool_axis)
 
 
 def _too_weak(postures: Postures) -> Mask:
