@@ -6,9 +6,9 @@ Each engine makes of a shape what it works with.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -28,6 +28,15 @@ from cellcolor.mesh.triangle_mesh import grouped
 Kind = Literal[
     "box", "sphere", "cylinder", "capsule", "cone", "half-space", "cells", "hull", "mesh"
 ]
+
+_MESHES: dict[str, Callable[..., trimesh.Trimesh]] = {
+    "box": lambda *size: trimesh.creation.box(size),
+    "sphere": partial(trimesh.creation.icosphere, 2),
+    "cylinder": partial(trimesh.creation.cylinder, sections=20),
+    "cone": partial(trimesh.creation.cone, sections=20),
+    "capsule": lambda radius, length: trimesh.creation.capsule(length, radius, count=[20, 20]),
+}
+"""Filled shapes by their sizes in m, anywhere along z."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +93,18 @@ class Shape:
         signs = np.stack(np.meshgrid(*[(-0.5, 0.5)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
         from_box = np.linalg.inv(to_box)
         return np.asarray((signs * extents) @ from_box[:3, :3].T + from_box[:3, 3])
+
+    def shell(self) -> tuple[Array, Index]:
+        """Points (k, 3) in m and triangles (t, 3) of its surface, curved faces as many flat ones.
+
+        They are in the frame of what carries it. A half space has none, and cells have no such.
+        """
+        points, faces = self.vertices, self.faces
+        if self.kind in _MESHES:
+            mesh = _MESHES[self.kind](*self.sizes)
+            points = mesh.vertices - mesh.bounds.mean(axis=0)
+            faces = np.array(mesh.faces, dtype=np.int64)
+        return points @ self.rotation.T + self.origin, faces
 
     @property
     def width(self) -> float:
