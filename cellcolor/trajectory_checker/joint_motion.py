@@ -1,4 +1,4 @@
-"""Times and joints: order, jumps, limits, velocities of joints and tool, accelerations, jerks."""
+"""Times and joints: order, jumps, limits, velocities, accelerations, jerks."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from cellcolor.trajectory_checker.tolerances import (
     BOW_OF_SLIDE,
     CYCLE,
     JUMP,
-    POSE_ROUNDING,
     SHARE_OVER_LIMIT,
 )
 
@@ -31,10 +30,7 @@ class JointLimits:
         velocity: rad/s or m/s.
         acceleration: rad/s² or m/s²; None where the setup has none.
         jerk: rad/s³ or m/s³; None where the setup has none.
-        tool_speed: of the tip in contact, m/s, no array; infinite where the setup has none.
         slides: which joints are prismatic.
-        touch_speed: of the tip on the step onto the surface and on that off it, m/s, no array;
-            infinite where the setup has none.
     """
 
     lower: Array | None
@@ -42,9 +38,7 @@ class JointLimits:
     velocity: Array
     acceleration: Array | None
     jerk: Array | None
-    tool_speed: float
     slides: Mask
-    touch_speed: float = np.inf
 
     @property
     def units(self) -> list[str]:
@@ -107,14 +101,6 @@ def judge_joints(
     known = ascending & ~jumps.any(axis=1)
     _judge_accelerations(trajectory, known, tips, limits, faults)
     _judge_jerks(trajectory, known, tips, limits, faults)
-    moves: Mask = ~np.any(jumps, axis=1)
-    moves[[sample for sample in trajectory.unplanned if sample < len(moves)]] = False
-    touching = trajectory.contact[1:] != trajectory.contact[:-1]
-    for steps_of, most, doing in (
-        (together, limits.tool_speed, "in contact"),
-        (touching, limits.touch_speed, "where it touches or leaves the surface"),
-    ):
-        _judge_tool_speed(tips, safe[:, 0], steps_of & moves, most, doing, faults)
     return np.asarray(jumps.any(axis=1))
 
 
@@ -155,21 +141,6 @@ def _note_jumps(
         by = f"{steps[sample, joint]:.4g} {units[joint]}"
         text = f"{names[joint]} moves by {by} to the next sample"
         faults.add("jump", text, sample, sample + 1, joint=joint, place=tips[sample])
-
-
-def _judge_tool_speed(
-    tips: Array, passed: Array, asked: Mask, most: float, doing: str, faults: FaultList
-) -> None:
-    """Note on which of the steps that are asked about the tip is too fast."""
-    speed = np.where(asked, np.linalg.norm(np.diff(tips, axis=0), axis=1) / passed, 0.0)
-    over = speed > most * (1 + SHARE_OVER_LIMIT) + POSE_ROUNDING / passed
-    faults.add_stretches(
-        "velocity",
-        over,
-        speed,
-        lambda k: f"the tool moves at {speed[k]:.4g} m/s {doing}, allowed: {most:.4g}",
-        tips,
-    )
 
 
 def _judge_accelerations(

@@ -32,7 +32,7 @@ def faults_of(
         None if limit is None else np.full(count, limit) for limit in (velocity, acceleration, jerk)
     )
     assert fastest is not None
-    limits = JointLimits(None, None, fastest, most, change, np.inf, np.zeros(count, bool))
+    limits = JointLimits(None, None, fastest, most, change, np.zeros(count, bool))
     found = FaultList(drive, timed=True)
     judge_joints(drive, np.asarray(drive.points), limits, True, found)
     return set(found.counts)
