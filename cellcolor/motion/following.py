@@ -1,7 +1,7 @@
 """The arm along samples of a tool path: one branch, its angles unwound, every sample judged.
 
 Samples are evenly spaced, at most 1 mm and 1 degree apart. Where a joint is fast, beside a
-singularity, :mod:`~cellcolor.motion.courses` puts more between. The degree is measured with the
+singularity, :mod:`~cellcolor.motion.segment` puts more between. The degree is measured with the
 path's own normals. With those of the surface, which the samples get, neighbors beside a sharp edge
 can be a little farther apart: 1.13 degrees at most on the parts of docs/parts.md. The judge of
 trajectories tests between them.

@@ -17,8 +17,8 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.setup import Setup
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.motion import courses, following
-from cellcolor.motion.courses import Course, laid_out
+from cellcolor.motion import following
+from cellcolor.motion import segment as module
 from cellcolor.motion.following import (
     DISTANCE,
     Followed,
@@ -37,7 +37,7 @@ CORNERS = np.array([[-0.05, -0.01, 0.0], [0.05, -0.01, 0.0], [0.0, 0.05, 0.0]])
 MOST = 0.5  # rad; docs/judging-trajectories.md: in contact, a longer step is a jump
 
 
-def course(passed_within: float, monkeypatch: pytest.MonkeyPatch) -> Course:
+def course(passed_within: float, monkeypatch: pytest.MonkeyPatch) -> tuple[Samples, Followed]:
     """Across a triangle, with a joint that turns by half a circle, most of it within a length."""
 
     class Judge:
@@ -51,33 +51,31 @@ def course(passed_within: float, monkeypatch: pytest.MonkeyPatch) -> Course:
         reasons = np.zeros(len(samples), dtype=np.uint8)
         return Followed(angle, reasons, np.zeros(len(samples) - 1, dtype=bool))
 
-    monkeypatch.setattr(courses, "follow", follow)
-    monkeypatch.setattr(courses, "bowed", lambda _robot, joints: np.zeros(len(joints) - 1, bool))
-    monkeypatch.setattr(courses, "off_way", lambda *_: False)
-    monkeypatch.setattr(courses, "unwound", lambda joints, _: joints)
-    monkeypatch.setattr(courses, "joint_space", lambda _: None)
+    monkeypatch.setattr(module, "follow", follow)
+    monkeypatch.setattr(module, "bowed", lambda _robot, joints: np.zeros(len(joints) - 1, bool))
+    monkeypatch.setattr(module, "off_way", lambda *_: False)
+    monkeypatch.setattr(module, "unwound", lambda joints, _: joints)
+    monkeypatch.setattr(module, "joint_space", lambda _: None)
     up = np.tile([0.0, 0.0, 1.0], (3, 1))
     ends = np.array([[-0.0301, 0.0, 0.0], [0.0302, 0.0, 0.0]])
     path = ToolPath(0, 0, ends, up[:2], np.array([0]))
     mesh = TriangleMesh(CORNERS, np.array([[0, 1, 2]]))
-    laid: Any = SimpleNamespace(paths=SimpleNamespace(paths=(path,)), along_border=(None,))
     robot = SimpleNamespace(slides=np.zeros(1, dtype=bool))
-    prepared: Any = SimpleNamespace(judge=Judge(), robot=robot)
-    surface: Any = SimpleNamespace(mesh=mesh)
-    refusals: Any = SimpleNamespace(add=lambda *_: None)
-    _, (found,) = laid_out(prepared, surface, up, 0, lambda: laid, refusals, NEVER)
-    return found
+    segments = SimpleNamespace(surface=SimpleNamespace(mesh=mesh), normals=up)
+    prepared = SimpleNamespace(judge=Judge(), robot=robot)
+    ground: Any = SimpleNamespace(prepared=prepared, segments=segments, deadline=NEVER)
+    return module.course(ground, path, even_places(path), 0)
 
 
 @pytest.mark.parametrize("passed_within", [0.1, 0.003, 0.0005, 0.0001])
 def test_a_fast_joint_gets_samples_so_close_that_no_step_is_a_jump(
     passed_within: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    found = course(passed_within, monkeypatch)
-    x, angles = found.samples.points[:, 0], found.followed.joints[:, 0]
+    samples, followed = course(passed_within, monkeypatch)
+    x, angles = samples.points[:, 0], followed.joints[:, 0]
     assert np.allclose(np.tan(angles) * passed_within, x)
     assert np.abs(np.diff(angles)).max() < MOST
-    assert not found.followed.torn.any()
+    assert not followed.torn.any()
     assert x[0] == -0.0301 and x[-1] == 0.0302
     steps = np.diff(x)
     assert (steps > 0).all() and (steps <= DISTANCE).all()
