@@ -207,12 +207,12 @@ def _between_walls(
     Args:
         parted: how many strokes there are without walls.
     """
-    surface, mesh = ground.segments.surface, ground.states.small.whole
+    surface = ground.segments.surface
     space, names = joint_space(ground.prepared), ground.prepared.robot.joint_names
     color = ground.segments.colors[segment]
     cracks = [crack for crack in surface.cracks if color in crack.colors]
-    closed = mesh.marked([(crack.i, crack.j) for crack in cracks])
-    steps = steps_of(ground.states, segment, closed)
+    closed = surface.mesh.marked([(crack.i, crack.j) for crack in cracks])
+    steps = steps_of(ground.states, space, segment, closed)
     walls, joint = walls_of(steps, space)
     covered, strokes = _laid_out(ground, segment, branch, refusals, walls)
     if joint is not None:
