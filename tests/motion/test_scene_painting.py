@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from painted import assert_whole, random_solution
+from painted import assert_whole, mean_cost, random_solution
 from shipped import shipped
 
 from cellcolor.arrays import unit
@@ -24,6 +24,7 @@ from cellcolor.motion import scene_painting
 from cellcolor.motion.following import Samples, with_normals_of
 from cellcolor.motion.posture import color_costs
 from cellcolor.motion.scene_painting import ScenePainting, paint_scene
+from cellcolor.painting.paint import paint
 from cellcolor.painting.refined import interpolated, unrefined
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
@@ -68,8 +69,9 @@ def test_a_solved_scene_is_painted_as_proved(name: str) -> None:
     assert found.painted.minima == (solution.segments,) and found.painted.refused == ()
     assert_whole(built.surface, found.painted, solution)
     assert reaches(built.prepared, found)
-    borders = found.painted.borders
-    assert borders.after.cost < borders.before.cost
+    cost = color_costs(built.robot, built.verdicts)[:, np.array(built.color_branch)]
+    drawn = paint(built.surface, decomposition, solution)
+    assert mean_cost(found.painted, cost) < mean_cost(drawn, cost)
     assert told == ["painting", "moving borders"]
 
 
