@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -26,10 +27,10 @@ from cellcolor.motion.following import (
     even_places,
     follow,
     joint_space,
+    normals_at,
     off_way,
     sampled,
     unwound,
-    with_normals_of,
 )
 from cellcolor.motion.small_triangles import JUMP, ArmRefusals, CornerStates
 from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
@@ -153,7 +154,8 @@ def course(ground: Ground, path: ToolPath, places: Array, branch: int) -> tuple[
     mesh, normals = ground.segments.surface.mesh, ground.segments.normals
 
     def at(places: Array) -> Samples:
-        return with_normals_of(sampled(path, places), mesh, normals)
+        points, faces = sampled(path, places)
+        return Samples(points, normals_at(mesh, normals, faces, points), faces)
 
     samples = at(places)
     followed = follow(prepared, samples, branch, deadline)
@@ -165,7 +167,8 @@ def course(ground: Ground, path: ToolPath, places: Array, branch: int) -> tuple[
         for share in _BETWEEN:
             way = joints[:-1] + share * np.diff(joints, axis=0)
             inner = places[:-1] + share * np.diff(places)
-            bad |= off_way(prepared.robot, way, sampled(path, inner), mesh, normals)
+            points, faces = sampled(path, inner)
+            bad |= off_way(prepared.robot, way, points, partial(normals_at, mesh, normals, faces))
         ends = valid[:-1] & valid[1:] & ~torn
         bad &= ends
         if not bad.any():

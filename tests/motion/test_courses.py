@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
@@ -25,6 +26,7 @@ from cellcolor.motion.following import (
     Samples,
     bowed,
     even_places,
+    normals_at,
     off_way,
     sampled,
 )
@@ -114,13 +116,13 @@ def test_the_tool_is_compared_with_the_normal_where_its_tip_is(
     mesh = TriangleMesh(np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.006, 0]]), np.array([[0, 1, 2]]))
     normals = np.array([[0.0, -1, 1], [0.0, -1, 1], [0.0, 1, 1]]) / np.sqrt(2)
     middle = np.array([[0.02, 0.003, 0.0]])
-    samples = Samples(middle, np.array([[0.0, 0.0, 1.0]]), np.array([0]))
     tip = middle + np.array([0.0, aside, 0.0])
     pose = SimpleNamespace(tip=tip, tool_axis=np.array([[0.0, 0.0, -1.0]]))
     monkeypatch.setattr(following, "forward", lambda *_: pose)
     robot: Any = SimpleNamespace(task=SimpleNamespace(direction=True))
     # 20 µm aside the normal is 0.4 degrees off, 50 µm aside 0.95; 0.6 may be.
-    assert off_way(robot, np.zeros((1, 6)), samples, mesh, normals).tolist() == [told]
+    normals_of = partial(normals_at, mesh, normals, np.array([0]))
+    assert off_way(robot, np.zeros((1, 6)), middle, normals_of).tolist() == [told]
 
 
 @pytest.mark.parametrize("beyond", [0.0, 1e-6, 2e-5])
@@ -130,11 +132,11 @@ def test_no_even_sample_is_just_beside_one_that_is_asked_for(beyond: float) -> N
     points = np.stack([x, 0 * x, 0 * x], axis=1)
     path = ToolPath(0, 0, points, np.tile([0.0, 0.0, 1.0], (3, 1)), np.zeros(2, dtype=np.int64))
     places = even_places(path, np.array([1]))
-    samples = sampled(path, places)
-    steps = np.diff(samples.points[:, 0])
+    samples, _ = sampled(path, places)
+    steps = np.diff(samples[:, 0])
     assert steps.min() > 0.9e-3 and steps.max() <= DISTANCE
-    assert np.abs(samples.points[:, 0] - x[1]).min() < 1e-12
-    assert samples.points[-1, 0] == pytest.approx(x[2])
+    assert np.abs(samples[:, 0] - x[1]).min() < 1e-12
+    assert samples[-1, 0] == pytest.approx(x[2])
 
 
 @pytest.mark.parametrize("pattern", PATTERNS)
@@ -149,10 +151,8 @@ def test_samples_go_round_the_ends_of_cracks(pattern: str, seed: int) -> None:
     covered = cover(painting, pattern=pattern, spacing_m=0.05, tool_radius_m=0.05)
     mesh = painting.surface.mesh
     for path, corners in zip(covered.paths.paths, covered.along_border, strict=True):
-        samples = sampled(path, even_places(path, corners))
-        owners = mesh.corners[
-            samples.faces, mesh.shares(samples.faces, samples.points).argmax(axis=1)
-        ]
+        points, faces = sampled(path, even_places(path, corners))
+        owners = mesh.corners[faces, mesh.shares(faces, points).argmax(axis=1)]
         steps = {(min(a, b), max(a, b)) for a, b in pairwise(owners.tolist()) if a != b}
         assert len(steps) > 20
         assert not steps & set(cracks)

@@ -21,7 +21,7 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.lab.families.surfaces import voronoi
 from cellcolor.motion import scene_painting
-from cellcolor.motion.following import Samples, with_normals_of
+from cellcolor.motion.following import normals_at
 from cellcolor.motion.posture import color_costs
 from cellcolor.motion.scene_painting import ScenePainting, paint_scene
 from cellcolor.painting.paint import paint
@@ -159,7 +159,7 @@ def test_normals_between_vertices_are_those_that_the_judge_takes(seed: int) -> N
     shares = rng.dirichlet(np.ones(3), 200)
     points = np.einsum("ki,kij->kj", shares, finer.mesh.points[finer.mesh.corners[faces]])
     between = interpolated(finer.between, normals)
-    found = with_normals_of(Samples(points, points, faces), finer.mesh, between).normals
+    found = normals_at(finer.mesh, between, faces, points)
     fine = refined(Surface(surface.vertices, np.array(surface.faces), normals), 1e9, NEVER)
     facing = np.tile(surface.mesh.triangle_normals[0], (200, 1))
     assert found == pytest.approx(fine.locate(points, facing).normals, abs=1e-9)
