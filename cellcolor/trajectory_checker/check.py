@@ -149,10 +149,9 @@ def _check_arm(prepared: PreparedScene, trajectory: Trajectory) -> None:
 
 def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> JointLimits:
     robot, setup, motion = prepared.robot, prepared.scene.setup, prepared.scene.setup.motion
-    lower: Array | None = robot.lower
-    upper: Array | None = robot.upper
+    lower, upper = robot.lower, robot.upper
     if not setup.constraints.collision:
-        lower = upper = None
+        lower, upper = np.full(robot.joints, -np.inf), np.full(robot.joints, np.inf)
         notes.append("The setup leaves out collisions and joint limits.")
     velocity = robot.velocity
     acceleration: Array | None = None

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.arrays import Array, stretches
+from cellcolor.arrays import Array, stretches, unit
 from cellcolor.data.trajectory import ExtraLiftOff, RepeatedStretch, Trajectory, TrajectoryTable
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
@@ -29,7 +29,10 @@ def judge_poses(
         tips, axes: (k, 3) what forward kinematics gives, m and unit vectors.
     """
     apart = np.linalg.norm(trajectory.points - tips, axis=1)
-    turned = _turned(robot, trajectory.normals, axes)
+    turned = np.zeros(len(axes))
+    if robot.task.direction:
+        lengths = np.linalg.norm(trajectory.normals, axis=1)
+        turned = np.where(lengths > 0, angles(unit(trajectory.normals), -axes), np.pi)
     wrong = (apart > POSE_DISTANCE) | (turned > POSE_ANGLE)
     faults.add_stretches(
         "pose",
@@ -41,15 +44,6 @@ def judge_poses(
         ),
         tips,
     )
-
-
-def _turned(robot: Robot, normals: Array, axes: Array) -> Array:
-    """How far stated normals (k, 3) are off those that tool axes give, (k,) in rad; pi for none."""
-    if not robot.task.direction:
-        return np.zeros(len(normals))
-    length = np.linalg.norm(normals, axis=1)
-    unit = normals / np.where(length > 0, length, 1.0)[:, None]
-    return np.where(length > 0, angles(unit, -axes), np.pi)
 
 
 def judge_lift_offs(trajectory: Trajectory, minimum: int | None, faults: FaultList) -> None:

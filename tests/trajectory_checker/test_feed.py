@@ -81,7 +81,8 @@ def judged(
 ) -> tuple[StrokeFeed, set[str]]:
     drive, dense = along(speed, lever)
     slides = np.zeros(lever.shape[1], dtype=bool)
-    limits = JointLimits(None, None, velocity, acceleration, None, slides)
+    everywhere = np.full(len(velocity), np.inf)
+    limits = JointLimits(-everywhere, everywhere, velocity, acceleration, None, slides)
     motion = Motion(
         tool_radius_m=RADIUS, speed_m_per_s=ASKED, joint_accelerations_rad_per_s2=(1.0,), **keys
     )
