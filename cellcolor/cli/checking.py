@@ -13,7 +13,7 @@ from cellcolor.checker.claimed_numbers import claims
 from cellcolor.checker.division import check_scheme
 from cellcolor.cli.ending import Exit
 from cellcolor.cli.inputs import STANDARD_INPUT, input_file, name_of, read_subject
-from cellcolor.cli.terminal import complain, print_json, say, stages_of
+from cellcolor.cli.terminal import at_work, complain, print_json, say
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import SchemeKey, Solution, read_schemes, scheme_key
 from cellcolor.data.trajectory import Trajectory
@@ -29,7 +29,7 @@ from cellcolor.data.verdicts import (
 from cellcolor.data.wording import count, lift_offs_of, segments_and_lift_offs
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.installed import find_claim, find_file
-from cellcolor.door.reading import format_of_claim, read_trajectory
+from cellcolor.door.reading import format_of_claim, read_claim
 from cellcolor.door.subject import Subject
 from cellcolor.errors import CellcolorError, InputError, naming
 from cellcolor.files.writing import is_folder_or_nothing
@@ -270,10 +270,10 @@ def _described(name: str, verdict: Verdict) -> PlanVerdict:
 def _check_trajectory(request: Request, claim: Path) -> Exit:
     from cellcolor.door.judging import judge_trajectory
 
-    given = read_trajectory(claim)
+    given = read_claim(claim, (Trajectory,))
     with naming(name_of(request.claim)):
         subject = request.opened(request.deadline)
-        with stages_of(Path(request.claim), "judging") as report:
+        with at_work(Path(request.claim), "judging") as report:
             verdict = judge_trajectory(subject, given, request.deadline, report)
     document = {"file": request.claim} | verdict.to_document()
     return _told(request, verdict, document, say_trajectory)

@@ -15,7 +15,6 @@ from cellcolor.data.plan import ContactPath, JointPlan, Plan, VertexContacts
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import Trajectory, TrajectoryTable
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.door.installed import extras_for
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
 from cellcolor.oracle import JointViolation, PathVerdict
@@ -57,9 +56,8 @@ def colors_of_joints(
     Raises:
         InputError: the subject is no scene, or has other numbers of vertices or joints.
     """
-    built = _built(subject)
-    with extras_for("a plan in joint angles"):
-        from cellcolor.trajectory_checker.at_vertices import at_vertices
+    built = subject.build()
+    from cellcolor.trajectory_checker.at_vertices import at_vertices
 
     surface, joints = built.surface, plan.joints
     if len(joints) != len(surface.vertices):
@@ -90,9 +88,8 @@ def path_verdict(subject: Subject, given: AnyPath, deadline: Deadline = NEVER) -
     Raises:
         InputError: the subject is no scene, or the path is of another arm.
     """
-    built = _built(subject)
-    with extras_for("a tool path in joint angles"):
-        from cellcolor.trajectory_checker.at_vertices import touches
+    built = subject.build()
+    from cellcolor.trajectory_checker.at_vertices import touches
 
     names = built.robot.joint_names
     if isinstance(given, Trajectory) and given.joint_names != names:
@@ -168,10 +165,3 @@ def _violation(
     own = None if joints is None or np.isnan(joints).any() else tuple(joints.tolist())
     slides = tuple(np.flatnonzero(built.robot.slides).tolist())
     return JointViolation(vertex, None, (x, y, z), reason, own, slides)
-
-
-def _built(subject: Subject) -> BuildResult:
-    if subject.built is None:
-        message = "need the scene with its arm; this is only a labelled surface or an instance"
-        raise InputError(None, "joints", message)
-    return subject.built

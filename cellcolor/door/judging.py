@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from os import PathLike
-from pathlib import Path
 from typing import Any, Unpack, overload
 
 from cellcolor.checker.claimed_numbers import contradictions
@@ -19,7 +18,7 @@ from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.asked import Search
 from cellcolor.door.installed import extras_for, find_claim
 from cellcolor.door.oracle import SECONDS, AnyPlan, Oracle
-from cellcolor.door.reading import ReadTrajectory, format_of_claim, read_trajectory
+from cellcolor.door.reading import ReadTrajectory, read_claim
 from cellcolor.door.subject import Result, Solvable, Subject, open_subject, solution_of
 from cellcolor.oracle import ProvenRange, Verdict, prove
 from cellcolor.questions.places import Place
@@ -86,9 +85,9 @@ def check(
         InputError: one of the two cannot be used.
         OutOfTime: the time limit came before there was a verdict on a trajectory.
     """
-    claim: Any = find_claim(solution) if isinstance(solution, (str, PathLike)) else solution
-    if isinstance(claim, Path) and format_of_claim(claim) == Trajectory.FORMAT:
-        claim = read_trajectory(claim)
+    claim: Any = solution
+    if isinstance(solution, (str, PathLike)):
+        claim = read_claim(find_claim(solution), (Solution, Trajectory))
     if isinstance(claim, (Trajectory, TrajectoryTable)):
         deadline = Deadline.of(time_limit)
         subject = open_subject(instance, deadline).left_alone(left_alone)

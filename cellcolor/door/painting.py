@@ -93,7 +93,10 @@ def cover(
     Args:
         surface: the painted surface, or its file; or what ``cellcolor.paint`` returns.
         plan: one color for each vertex of it, or the file of that; None with a ``Painted``.
-        pattern: ``contour`` or ``back-and-forth``, or what another package registers.
+        pattern: of the tool paths: ``contour``; ``back-and-forth``, whose rows may run along a
+            vector (``back-and-forth:X,Y,Z``), around an axis (``back-and-forth:around:X,Y,Z``) or
+            so that they turn least (``back-and-forth:fewest-turns``); or what another package
+            registers.
         spacing_m: desired distance between neighboring passes, m.
         tool_radius_m: of the tool's footprint, m.
         normals: (n, 3) outward unit normals at the vertices; those of the mesh if it is None.
@@ -147,9 +150,10 @@ def cover(
 
 def _unit_rows(normals: Any, count: int) -> Array:
     """Normals of length 1."""
-    from cellcolor.data.value import THREES
+    from cellcolor.data.value import RowsOfThree, adapter_of
+    from cellcolor.files.validation import validated
 
-    rows = THREES.of(normals, "normals")
+    (rows,) = validated(adapter_of(tuple[RowsOfThree]), (normals,), ("normals",))
     if len(rows) != count:
         raise InputError(None, "normals", f"has {len(rows)} entries for {count} vertices")
     lengths = np.linalg.norm(rows, axis=1)

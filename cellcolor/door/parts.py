@@ -31,7 +31,7 @@ def inspect(
     Args:
         part: a mesh file (STL, OBJ, PLY), a ``trimesh.Trimesh``, or vertices (n, 3) and faces
             (m, 3).
-        unit: ``m``, ``mm``, ``cm`` or ``in``; without it the likely unit is taken and reported.
+        unit: ``m``, ``mm``, ``cm`` or ``in``; None for the likely one, which is reported.
         **work: :class:`~cellcolor.door.asked.Work`.
 
     Raises:
@@ -58,10 +58,10 @@ def repair(
 
     Args:
         part: as of :func:`inspect`.
-        unit: ``m``, ``mm``, ``cm`` or ``in``; without it the likely one.
+        unit: ``m``, ``mm``, ``cm`` or ``in``; None for the likely one.
         fill_holes_m: holes with a border up to that length are filled.
         least_component: components with less than this share of the largest one's area are
-            dropped; a hundredth if it is not given.
+            dropped; None for a hundredth.
         edge_length_m: remesh to edges of about that length; needs the extra ``parts``.
         **work: :class:`~cellcolor.door.asked.Work`.
 

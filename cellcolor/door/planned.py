@@ -37,7 +37,8 @@ from cellcolor.files.writing import (
 from cellcolor.painting.paint import Painted
 
 if TYPE_CHECKING:
-    from cellcolor.exports.interface import ArmAxes, PlannedMotion
+    from cellcolor.arrays import Array
+    from cellcolor.exports.interface import PlannedMotion
     from cellcolor.frontend import BuildReport, BuildResult
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.pictures.report_page.content import AnsweredScene
@@ -186,11 +187,15 @@ class UnfinishedPlan:
 
         if self.trajectory is None:
             return None
-        prepared = self.built.prepared
+        prepared, robot = self.built.prepared, self.built.robot
         task, motion = prepared.setup.task, prepared.setup.motion
+        given = None if motion is None else motion.joint_velocities_rad_per_s
+        speeds = np.where(np.isnan(robot.velocity), given or np.nan, robot.velocity)
         return PlannedMotion(
             trajectory=self.trajectory,
-            axes=axes_of(prepared),
+            robot=replace(robot, velocity=speeds),
+            flange=robot.frame_of(prepared.setup.robot.flange_link),
+            base=controller_base(prepared),
             step_s=export_step_s,
             # A tool that stands off presses on nothing.
             force_n=0.0 if task.stand_off_m else task.normal_force_n,
@@ -255,21 +260,16 @@ class PlannedScene(UnfinishedPlan):
         return "\n".join(said)
 
 
-def axes_of(prepared: PreparedScene) -> ArmAxes:
-    """The arm's axes, seen from the base of its controller.
+def controller_base(prepared: PreparedScene) -> Array:
+    """(4, 4) pose in the world of the link that the arm's controller counts from.
 
     Raises:
         InputError: the arm has no link that the setup names as the base.
     """
-    from cellcolor.exports.interface import ArmAxes
-
     setup = prepared.setup
     base = None if setup.controller is None else setup.controller.base_link
-    given = None if setup.motion is None else setup.motion.joint_velocities_rad_per_s
     try:
-        axes = ArmAxes.of(prepared.robot, setup.robot.flange_link, base)
-        unknown = np.isnan(axes.speeds) & (given is not None)
-        return replace(axes, speeds=np.where(unknown, given or np.nan, axes.speeds))
+        return prepared.robot.base_frame(base)
     except KeyError as error:
         message = f"no link {base!r} stands still before the first joint"
         file = None if setup.file is None else str(setup.file)

@@ -4,24 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import pi
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cellcolor.data.wording import check_share, listed
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
-from cellcolor.door.asking import explain, place, tradeoff
+from cellcolor.door.asking import explain, tradeoff
 from cellcolor.door.installed import require_motion
 from cellcolor.door.planned import (
     NothingCovered,
     PlannedScene,
     PlanOutOfTime,
     UnfinishedPlan,
-    axes_of,
+    controller_base,
 )
 from cellcolor.door.solving import rest_of, solve
-from cellcolor.door.subject import Result, Subject, scene_or_file
+from cellcolor.door.subject import Result, Subject, scene_of
 from cellcolor.errors import InputError, naming
 from cellcolor.questions.places import Place
 from cellcolor.solvers.interface import Options
@@ -35,11 +34,8 @@ if TYPE_CHECKING:
 
 _NEEDED = ("pinocchio", "fcl", "igl", "trimesh", "scipy", "potpourri3d")
 _FOR_SOLVING = 0.5  # share of the time left then; a proof can take any time
-_QUESTIONS = ("tradeoff", "explain", "place", "setups")  # that a plan's page can answer besides
-_MOVED = 0.1  # m; how far the question ``place`` moves the part along x and y
-_PLACEMENTS = 32  # that the question ``place`` tries
+_QUESTIONS = ("tradeoff", "explain")  # that a plan's page can answer besides
 _DIVISIONS = 3  # tried at most: another if the arm finds no way to some color
-_FOR_BUILDING = 0.6  # share of the time left then, for the question ``setups``
 
 
 def plan(
@@ -59,12 +55,11 @@ def plan(
 
     Args:
         scene: its file, its shipped name, or the value.
-        pattern: how tool paths are laid out, such as ``contour``; None for the usual one.
+        pattern: of the tool paths, as for ``cover``; None for the usual one.
         cover, left_alone: what has to be covered, as for ``solve``; the judge does not
             ask for what is left out.
-        ask: what the page is to tell besides, of ``tradeoff``, ``explain``, ``place`` and
-            ``setups``; it is asked of the whole scene in the time that is left. ``place`` moves the
-            part by up to 10 cm along x and y, ``setups`` turns it by quarter turns.
+        ask: what the page is to tell besides, of ``tradeoff`` and ``explain``, asked of the whole
+            scene in the time that is left.
         time_limit: seconds for all of it, None for as long as it takes.
         progress: told the name of each stage as it begins.
         **motion: keys of the setup's table ``[motion]``, which they replace, such as
@@ -84,22 +79,19 @@ def plan(
         if name not in _QUESTIONS:
             raise InputError(None, "ask", f"{name!r} is not one of {', '.join(_QUESTIONS)}")
     deadline = Deadline.of(time_limit)
-
-    given_or_file = scene_or_file(scene)
     require_motion("planning a motion", _NEEDED)
+    given = scene_of(scene)
     find_pattern(pattern or DEFAULT_PATTERN)
     from cellcolor.frontend.build import StageClock
     from cellcolor.frontend.prepared import prepare
-    from cellcolor.frontend.scene import Scene
     from cellcolor.motion.limits import home_of, motion_of
 
     clock = StageClock(deadline, progress)
-    given = Scene.read(given_or_file) if isinstance(given_or_file, Path) else given_or_file
     with clock.timed("preparation"):
         prepared = prepare(_with_motion(given, motion), deadline)
         # What is wrong with the motion is refused before the long work begins.
         home_of(prepared, motion_of(prepared))
-        axes_of(prepared)
+        controller_base(prepared)
     with clock.timed("colors"):
         whole = _built(prepared, given.file, StageClock(deadline, progress))
     run = _Run(whole, pattern or DEFAULT_PATTERN, clock, progress)
@@ -281,35 +273,21 @@ def _answered(
 ) -> tuple[AnsweredScene, tuple[str, ...]]:
     """The answers to the questions asked of a built scene, and why others have none or a part."""
     from cellcolor.pictures.report_page.content import AnsweredScene
-    from cellcolor.questions.setting_up import candidates_of, plan_of
 
-    scene = subject.build().scene
-    (x, y, z), (roll, pitch, yaw) = scene.placement.position_m, scene.placement.rpy_rad
-    around: dict[str, Any] = {"x": (x - _MOVED, x + _MOVED), "y": (y - _MOVED, y + _MOVED)}
-    turned = [(x, y, z, roll, pitch, yaw + turns * pi / 2) for turns in (1, 2, 3)]
     given: dict[str, Any] = {"time_limit": deadline, "progress": progress}
-
-    def set_ups() -> Answers:
-        found = candidates_of([scene], turned, deadline.share(_FOR_BUILDING), progress)
-        return plan_of(found, 1.0, None, Options(deadline=deadline), progress)
-
     ways: dict[str, Callable[[], Answers]] = {
         "tradeoff": lambda: tradeoff(subject, **given),
-        "explain": lambda: explain(scene, **given),
-        "place": lambda: place(scene, **around, points=_PLACEMENTS, **given),
-        "setups": set_ups,
+        "explain": lambda: explain(subject.build().scene, **given),
     }
     answers: list[Answers] = []
     unanswered: list[str] = []
     for name in (name for name in _QUESTIONS if name in names):
         try:
             answers.append(ways[name]())
+            if not answers[-1].complete:
+                unanswered.append(f"{name}: answered in part, the time limit came first")
         except OutOfTime:
             unanswered.append(f"{name}: not answered, the time limit came first")
-            continue
         except InputError as error:  # the motion is planned and judged all the same
             unanswered.append(f"{name}: not answered: {error}")
-            continue
-        if not answers[-1].complete:
-            unanswered.append(f"{name}: answered in part, the time limit came first")
     return AnsweredScene(subject.surface, subject.decomposition, tuple(answers)), tuple(unanswered)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from math import pi
 from os import PathLike
 from pathlib import Path
@@ -72,25 +72,15 @@ def format_of_claim(file: str | PathLike[str]) -> str | None:
     return form if isinstance(form, str) else None
 
 
-def read_claim(file: str | PathLike[str]) -> Plan | Solution | ReadTrajectory:
-    """Read a plan, a trajectory or a solution, as the file says.
-
-    Raises:
-        InputError: it cannot be used; names file and member.
-    """
-    if _is_table(file):
-        return read_trajectory_csv(file)
-    found: Plan | Solution | Trajectory = read_one_of(file, (Plan, Solution, Trajectory))
-    return found
-
-
-def read_trajectory(file: str | PathLike[str]) -> ReadTrajectory:
-    """What is in a trajectory's file.
+def read_claim(
+    file: str | PathLike[str], kinds: Collection[type[Document]] = (Plan, Solution, Trajectory)
+) -> Any:
+    """Read a plan, a trajectory or a solution, as the file says; of the kinds, or a table.
 
     Raises:
         InputError: it cannot be used; names file and member, or file, line and column.
     """
-    return read_trajectory_csv(file) if _is_table(file) else Trajectory.read(file)
+    return read_trajectory_csv(file) if _is_table(file) else read_one_of(file, kinds)
 
 
 def _is_table(file: str | PathLike[str]) -> bool:
@@ -151,7 +141,7 @@ def label(
         mesh: an OBJ, PLY or STL file in m, for ``.csv``, whose vertices are numbered from 0 in the
             order of this file.
         conflicts: see :func:`~cellcolor.configurations.labelling.from_configurations`.
-        reach_m: of the arm, see there.
+        reach_m: of the arm; a part far larger is refused.
         deadline: when to give up.
 
     Raises:

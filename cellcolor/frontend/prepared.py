@@ -6,6 +6,7 @@ The part is kept in its own frame as well. So the same part can be tested in ano
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from os import PathLike
 from typing import Any
@@ -22,13 +23,11 @@ from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_units
 from cellcolor.frontend.parts.cover import note_on_shell
 from cellcolor.frontend.parts.inspection import note_on_crossings
-from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.rounding import note_on_triangles
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.prepared_arm import PreparedArm, prepare_arm
 from cellcolor.frontend.reach.sheets import in_sheets
-from cellcolor.frontend.reach.validity import Judge
-from cellcolor.frontend.reach.validity_tests import Workplace
+from cellcolor.frontend.reach.validity_tests import Judge, Workplace
 from cellcolor.frontend.scene import Scene
 
 _MOST_POINTS = 20_000_000  # on all mesh edges; each is tested for up to eight branches
@@ -36,32 +35,19 @@ _MOST_ON_AN_EDGE = 500_000  # they are tested together
 
 
 @dataclass(frozen=True, eq=False)
-class PreparedPart:
-    """A part in its own frame, wherever it stands.
-
-    Attributes:
-        surface: the surface to be covered.
-        body: the shape that must not be hit.
-        open: whether that has a border, so that nothing but its faces says which side is outside.
-    """
-
-    surface: Surface
-    body: Shape
-    open: bool
-
-
-@dataclass(frozen=True, eq=False)
 class PreparedScene(Workplace):
     """A scene, ready for questions about configurations.
 
     Attributes:
-        part: in its own frame.
+        own_surface, own_body: the surface to be covered and the shape that must not be hit, in the
+            part's own frame.
         surface: the surface to be covered, in the world.
         notes: likely mistakes in robot and mesh, one sentence each.
     """
 
     scene: Scene
-    part: PreparedPart
+    own_surface: Surface
+    own_body: Shape
     surface: Surface
     notes: tuple[str, ...] = ()
     left_out: frozenset[str] = frozenset()
@@ -75,23 +61,20 @@ class PreparedScene(Workplace):
         """The tests."""
         return Judge(self, self.scene.validity_test, self.left_out)
 
-    def at(self, placement: Placement) -> PreparedScene:
-        """The same scene with the part standing elsewhere; only the part is moved.
+    def asking(self, tests: Collection[str]) -> PreparedScene:
+        """The same scene, of whose tests only these are made, by their names."""
+        others = frozenset(self.judge.reason_names) - frozenset(tests)
+        return replace(self, left_out=self.left_out | others)
 
-        Raises:
-            InputError: the part stands in a link that cannot move, or much too far away.
-        """
-        moved = replace(self, scene=self.scene.varied(placement=placement))
-        return named(_in_place(moved))
-
-    def amid(self, scene: Scene) -> PreparedScene:
+    def at(self, scene: Scene) -> PreparedScene:
         """The same arm and part in a scene that differs in placement, obstacles and ground only.
 
         Raises:
             InputError: an obstacle cannot be used, or the part stands in a link that cannot move,
                 or much too far away.
         """
-        around = _surroundings(scene, self.arm, NEVER)
+        same = (scene.obstacle, scene.ground) == (self.scene.obstacle, self.scene.ground)
+        around = {} if same else _surroundings(scene, self.arm, NEVER)
         return named(_in_place(replace(self, scene=scene, **around)))
 
     def displaced(self) -> list[PreparedScene]:
@@ -105,12 +88,11 @@ class PreparedScene(Workplace):
         tolerance = self.scene.tolerance
         if tolerance is None:
             return []
-        own = self.part.surface.placed(self.scene.placement).vertices
+        own = self.own_surface.placed(self.scene.placement).vertices
         center = (own.min(axis=0) + own.max(axis=0)) / 2
-        exact = replace(self, scene=self.scene.varied(tolerance=None))
         found = []
         for placement in tolerance.displaced(self.scene.placement, center):
-            there = exact.at(placement)
+            there = self.at(self.scene.varied(tolerance=None, placement=placement))
             surface = self.surface.taken_along(self.scene.placement, placement)
             found.append(replace(there, surface=surface))
         return found
@@ -151,10 +133,10 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     if scene.solid_object is not None:
         shape = scene.solid_object.surface(scene.folder, deadline)
     body = Shape("mesh", vertices=shape.vertices, faces=shape.faces)
-    part = PreparedPart(covered, body, bool(shape.mesh.border.any()))
     around = _surroundings(scene, arm, deadline)
+    own = {"own_surface": covered, "own_body": body}
     prepared = _in_place(
-        PreparedScene(arm=arm, target=body, scene=scene, part=part, surface=surface, **around)
+        PreparedScene(arm=arm, target=body, scene=scene, surface=surface, **own, **around)
     )
     notes = arm.robot.warnings + notes_on_shapes(arm.robot) + notes_on_units(scene, reach)
     if covered.faceted:  # a shape is made without
@@ -187,10 +169,10 @@ def _surroundings(scene: Scene, arm: PreparedArm, deadline: Deadline) -> dict[st
 
 def _in_place(prepared: PreparedScene) -> PreparedScene:
     """The part where its scene has it."""
-    scene, part, robot = prepared.scene, prepared.part, prepared.robot
-    surface = part.surface.placed(scene.placement)
+    scene, robot = prepared.scene, prepared.robot
+    surface = prepared.own_surface.placed(scene.placement)
     check_part(surface, scene, prepared.arm.kinematics.reach, robot.base_frame(None)[:3, 3])
-    body = scene.placement.standing(part.body)
+    body = scene.placement.standing(prepared.own_body)
     margin = scene.setup.margins.to_object_m
     fixed = [each for each in robot.bodies if each.joint == 0 and scene.setup.constraints.collision]
     for each in fixed:

@@ -186,6 +186,7 @@ def _settled(content: Any) -> Any:
 _GONE = {
     "border_length_m": "for exact borders give the object a finer mesh, by max_edge_m (of a file) "
     "or target_vertices (of a shape)",
+    "faces_file": "give these faces as the object, and the whole part as the collision_object",
 }
 """Keys that files of earlier versions have, and what takes their place."""
 

@@ -303,23 +303,21 @@ def _check_fans(start: Index, following: Index, vertex_count: int) -> None:
     """
     corners = np.arange(len(start))
     degree = np.bincount(start, minlength=vertex_count)
-    ends = np.flatnonzero(following < 0)
-    fans = np.bincount(start[ends], minlength=vertex_count)
-    # Open fans are closed, so that a fan is a cycle of corners; of several at a vertex some stay
-    # open, but then they are too many already.
-    first = np.full(vertex_count, -1)
+    # The walk about a vertex begins with any corner, or with the end of an open fan.
+    first = np.zeros(vertex_count, dtype=np.int64)
+    first[start] = corners
     begun = np.ones(len(start), dtype=bool)
     begun[following[following >= 0]] = False
     first[start[begun]] = corners[begun]
-    cycle = following.copy()
-    cycle[ends] = first[start[ends]]
-    # Each corner learns the smallest one of its cycle, twice as many steps ahead every time.
-    smallest, ahead = corners, cycle
-    for _ in range(int(degree.max()).bit_length()):
-        smallest = np.minimum(smallest, smallest[ahead])
-        ahead = ahead[ahead]
-    cycles = np.bincount(start[smallest == corners], minlength=vertex_count)
-    bad = np.flatnonzero((np.maximum(fans, cycles) != 1) | (degree == 0))
+    walked = np.zeros(vertex_count, dtype=np.int64)
+    walking = np.flatnonzero(degree)
+    at = first[walking]
+    while len(walking):
+        walked[walking] += 1
+        at = following[at]
+        on = (at >= 0) & (at != first[walking])
+        walking, at = walking[on], at[on]
+    bad = np.flatnonzero((walked != degree) | (degree == 0))
     if not len(bad):
         return
     vertex = int(bad[0])

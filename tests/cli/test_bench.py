@@ -199,7 +199,7 @@ class TestRun:
     @pytest.mark.parametrize(
         ("arguments", "message"),
         [
-            (["nothing*"], "nothing*: matches no family and no shipped name"),
+            (["nothing*"], "nothing*: is not a file, and nothing of that name is shipped"),
             (["library/none"], "library/none: matches no family of the library"),
             (["small", "--solver", "nobody"], "solver: there is no 'nobody'"),
             (["small", "--solver", "dfs@0"], "dfs@0: no number of workers after @"),

@@ -15,7 +15,7 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER
 from cellcolor.decomposition import decomposition_of
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.arm.kinematics import task_determinants
+from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
@@ -113,7 +113,8 @@ def test_costs_by_hand(wok: BuildResult) -> None:
     cost = color_costs(robot, candidates)
     rows, branches = np.nonzero(candidates.valid)
     joints = candidates.configurations[rows, branches]
-    determinants = task_determinants(robot, joints, None)
+    poses = forward(robot, joints)
+    determinants = task_determinant(*tip_jacobian(poses), poses.tool_axis, robot.task)
     for row, branch, q, determinant in zip(rows, branches, joints, determinants, strict=True):
         room = [
             max(

@@ -7,10 +7,10 @@ about z, then comes the way d along z, a along the new x, and the twist alpha ab
 from __future__ import annotations
 
 import numpy as np
+from assembled import load_robot
 from scipy.spatial.transform import Rotation
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.urdf import parse_urdf
 

@@ -1,4 +1,4 @@
-"""The arm with its tool as plain arrays, taken from Pinocchio's reading of the URDF."""
+"""The arm with its tool as plain arrays."""
 
 from __future__ import annotations
 
@@ -85,8 +85,7 @@ class Robot:
         tested_pairs: pairs of bodies (indices) that self-collision looks at: all that do not
             belong to one link or to links next to each other.
         warnings: what its files have that is probably not meant, a sentence each.
-        model, geometry: Pinocchio's own, for those who want to compute independently; meshes and
-            capsules are small spheres there.
+        model: Pinocchio's, with a frame for each link.
         tool_links: the links of the tool that have a body.
         task: what it is asked to do with the tool; ``load_robot`` leaves the turn free.
     """
@@ -107,7 +106,6 @@ class Robot:
     joint_names: tuple[str, ...]
     warnings: tuple[str, ...]
     model: pin.Model = field(repr=False, compare=False)
-    geometry: pin.GeometryModel = field(repr=False, compare=False)
     stand_ins: tuple[StandIn, ...] = ()
     task: TaskSpace = FREE_TURN
     tool_links: frozenset[str] = frozenset()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
@@ -135,7 +135,7 @@ class Inspection:
             ("size", f"{size} m from {_at(self.low_m)} m, area {self.area_m2:.4g} m^2"),
             ("edges", f"{edges[0]} to {edges[4]} mm, quartiles {', '.join(edges[1:4])} mm"),
             ("components", f"{len(self.components):,}: {', '.join(first)}"),
-            *((name, text) for name, text in self._faults() if text),
+            *self._faults(),
             ("usable as it is", "yes" if self.refusal is None else f"no: {self.refusal}"),
         ]
         repairs = self.repairs or ("change nothing",)
@@ -146,24 +146,31 @@ class Inspection:
             [*lines, f"  and then it is {f'still not usable: {after}' if after else 'usable'}"]
         )
 
-    def _faults(self) -> list[tuple[str, str]]:
+    def _faults(self) -> Iterator[tuple[str, str]]:
+        """What each fault that there is is called, and how often and where it is found."""
         holes = [f"{1e3 * hole.length_m:.3g} mm long at {_at(hole.place)}" for hole in self.holes]
         edges, vertices, crossings = (
             list(map(_at, places))
             for places in (self.non_manifold_edges, self.non_manifold_vertices, self.crossings)
         )
-        return [
-            ("holes", _listed("border", holes)),
-            ("non-manifold", _listed("edge", edges, " of 3 faces or more")),
-            ("non-manifold", _listed("vertex", vertices, " not manifold")),
-            ("twins", _some(self.merged_vertices, "vertex", "in the same place as another")),
-            ("unused", _some(self.unused_vertices, "vertex", "without a face")),
-            ("duplicates", _some(self.duplicate_faces, "face", "there twice")),
-            ("flat", _some(self.flat_faces, "face", "without area")),
-            ("winding", _some(self.mixed_winding, "face", "against those around")),
-            ("inside out", _some(self.inside_out, "closed component", "with a negative volume")),
-            ("crossings", _listed("pair", crossings)),
+        found: list[tuple[str, list[str] | int, str, str]] = [
+            ("holes", holes, "border", ""),
+            ("non-manifold", edges, "edge", " of 3 faces or more"),
+            ("non-manifold", vertices, "vertex", " not manifold"),
+            ("twins", self.merged_vertices, "vertex", " in the same place as another"),
+            ("unused", self.unused_vertices, "vertex", " without a face"),
+            ("duplicates", self.duplicate_faces, "face", " there twice"),
+            ("flat", self.flat_faces, "face", " without area"),
+            ("winding", self.mixed_winding, "face", " against those around"),
+            ("inside out", self.inside_out, "closed component", " with a negative volume"),
+            ("crossings", crossings, "pair", ""),
         ]
+        for name, those, one, what in found:
+            number, places = (those, []) if isinstance(those, int) else (len(those), those)
+            more = [f"and {number - _SHOWN:,} more"] if len(places) > _SHOWN else []
+            where = ": " * bool(places) + ", ".join(places[:_SHOWN] + more)
+            if number:
+                yield name, f"{counted(number, one)}{what}{where}"
 
 
 def inspect_mesh(
@@ -311,15 +318,3 @@ def note_on_crossings(mesh: TriangleMesh) -> tuple[str, ...]:
 
 def _at(place: Sequence[float]) -> str:
     return in_words(np.array(place))
-
-
-def _listed(one: str, places: list[str], what: str = "") -> str:
-    """How many, and the first places."""
-    if not places:
-        return ""
-    more = f", and {len(places) - _SHOWN:,} more" if len(places) > _SHOWN else ""
-    return f"{counted(len(places), one)}{what}: {', '.join(places[:_SHOWN])}{more}"
-
-
-def _some(number: int, one: str, what: str) -> str:
-    return f"{counted(number, one)} {what}" if number else ""

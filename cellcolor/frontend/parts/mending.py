@@ -112,7 +112,8 @@ def refuse_gaps(vertices: Array, faces: Faces, flat: Faces) -> None:
         InputError: a corner of a flat face lies on the side of another (a T-vertex); names the
             place.
     """
-    beside = np.isin(_sides(faces, len(vertices)), _sides(flat, len(vertices)))
+    sides = TriangleMesh(vertices, np.concatenate([faces, flat])).edge_of_side
+    beside = np.isin(sides[: len(faces)], sides[len(faces) :])
     if beside.any():
         face, side = np.argwhere(beside)[0]
         middle = vertices[np.roll(faces[face], -side)[:2]].mean(axis=0)
@@ -121,12 +122,6 @@ def refuse_gaps(vertices: Array, faces: Faces, flat: Faces) -> None:
             "that; the part has to be meshed anew by what it comes from"
         )
         raise InputError(None, f"faces near {in_words(middle)}", message)
-
-
-def _sides(faces: Faces, vertices: int) -> Index:
-    """A number (m, 3) for each side of faces, the same in both directions."""
-    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)]), axis=0)
-    return np.asarray(ends[0] * vertices + ends[1])
 
 
 def in_words(place: Array) -> str:
@@ -184,9 +179,9 @@ def cut_apart(vertices: Array, faces: Faces) -> tuple[Array, Faces, float]:
     if not moved.any():
         return points, parted, 0.0
     # Towards the middle of its faces, by a share of the shortest side that it is an end of.
-    shortest, towards = np.full(len(points), np.inf), np.zeros_like(points)
-    sides = np.linalg.norm(points[parted] - points[np.roll(parted, -1, axis=1)], axis=2)
-    np.minimum.at(shortest, parted, np.minimum(sides, np.roll(sides, 1, axis=1)))
+    mesh, shortest = TriangleMesh(points, parted), np.full(len(points), np.inf)
+    np.minimum.at(shortest, mesh.edges, mesh.lengths[:, None])
+    towards = np.zeros_like(points)
     np.add.at(towards, parted, points[parted].mean(axis=1, keepdims=True) - points[parted])
     length = np.linalg.norm(towards, axis=1, keepdims=True)
     step = _APART * shortest[:, None] * towards / np.maximum(length, 1e-300) * moved[:, None]

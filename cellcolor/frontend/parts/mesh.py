@@ -88,7 +88,10 @@ def mesh_surface(
             message = f"the part is {size}: {error.message}"
             raise InputError(error.file, error.field, message) from error
     deadline.check()
-    normals = summed_normals(mesh)
+    # trimesh's own vertex normals have length 1 already, and do not reveal faces that cancel out.
+    angles = trimesh.triangles.angles(mesh.points[mesh.corners])
+    normals = np.zeros_like(mesh.points)
+    np.add.at(normals, mesh.corners, angles[:, :, None] * mesh.triangle_normals[:, None])
     size = np.linalg.norm(normals, axis=1, keepdims=True)
     if size.min() < 1e-6:
         vertex = int(np.argmin(size))
@@ -143,53 +146,35 @@ def _check_size(vertices: Array, meters_per_unit: float) -> None:
 
 
 def _check_elements(mesh: TriangleMesh) -> None:
-    vertices = mesh.points
-    there = np.zeros(len(vertices), dtype=bool)
-    there[mesh.corners] = True
-    if not there.all():
-        raise InputError(None, f"vertices[{np.argmin(there)}]", "belongs to no face")
-    _, first, index = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
-    twin = first[index.reshape(-1)] != np.arange(len(vertices))
+    _, first, index = np.unique(mesh.points, axis=0, return_index=True, return_inverse=True)
+    earlier = first[index.ravel()]
+    twin = earlier != np.arange(len(mesh.points))
     if twin.any():
         vertex = int(np.argmax(twin))
-        other = int(first[index.reshape(-1)[vertex]])
-        raise InputError(None, f"vertices[{vertex}]", f"in the same place as vertex {other}")
+        message = f"in the same place as vertex {earlier[vertex]}"
+        raise InputError(None, f"vertices[{vertex}]", message)
     longest = mesh.lengths[mesh.edge_of_side].max(axis=1)
     flat = 2 * mesh.areas <= 1e-9 * longest**2
     if flat.any():
         raise InputError(None, f"faces[{np.argmax(flat)}]", "has no area")
 
 
-def summed_normals(mesh: TriangleMesh) -> Array:
-    """Sums of the adjoining faces' unit normals, weighted with their angles at the vertex.
-
-    trimesh's own vertex normals already have length 1, so they do not reveal faces that cancel out.
-    """
-    angles = trimesh.triangles.angles(mesh.points[mesh.corners])
-    normals = np.zeros_like(mesh.points)
-    np.add.at(normals, mesh.corners, angles[:, :, None] * mesh.triangle_normals[:, None])
-    return normals
-
-
 def _coordinates(value: Any) -> Array:
-    vertices: Array = np.array(value, dtype=np.float64)
-    _check_triples(vertices)
-    return vertices
+    return _triples(np.array(value, dtype=np.float64))
 
 
 def _indices(value: Any) -> Faces:
     given = np.array(value)
     if given.dtype.kind not in "iu":
         raise ValueError("needs whole numbers")
-    faces: Faces = given.astype(np.int64)
-    _check_triples(faces)
-    return faces
+    return _triples(given.astype(np.int64))
 
 
-def _check_triples(array: NDArray[Any]) -> None:
+def _triples(array: NDArray[Any]) -> NDArray[Any]:
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"needs three columns, has the shape {array.shape}")
     array.setflags(write=False)
+    return array
 
 
 class ArraysObject(Part):

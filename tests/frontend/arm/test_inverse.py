@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembled import load_robot
 from hypothesis import given
 from hypothesis import strategies as st
 from independent import wrapped
@@ -13,7 +14,6 @@ from shipped import ROBOTS
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import BRANCHES, UrGeometry, solve_inverse, ur_geometry
 from examples import examples

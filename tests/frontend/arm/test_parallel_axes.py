@@ -10,6 +10,7 @@ import dh_arms
 import numpy as np
 import pinocchio as pin
 import pytest
+from assembled import load_robot
 from bent_tools import BENT, tip_frame, tip_frames
 from hypothesis import given
 from hypothesis import strategies as st
@@ -26,7 +27,6 @@ from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
 from cellcolor.frontend.arm.kinematics import (
     forward,
 )
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.planar import PlanarThree, PlanarTwo, Scara, ScaraWithoutTurn
 from cellcolor.frontend.arm.robot import (
     FREE_IN_PLANE,

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembled import load_robot
 from meshed_arm import write_package
 from shipped import ROBOTS
 from world import KINDS, standing
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.body import Shape, Shapes
+from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, Pair, pairs_of, pairs_with
 from cellcolor.frontend.contact.obstacle import BoxObstacle, CylinderObstacle, SphereObstacle
@@ -43,7 +43,7 @@ def meshed(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
         "wrist_3_link",
         ROBOTS / "polishing_tool.urdf",
         "tool_tip",
-        shapes=Shapes(request.param),
+        mesh_collision=request.param,
     )
 
 
