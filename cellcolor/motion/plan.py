@@ -18,7 +18,7 @@ from cellcolor.motion.following import joint_space
 from cellcolor.motion.limits import motion_of, speeds_of
 from cellcolor.motion.order import ordered
 from cellcolor.motion.segment import Ground, strokes_of
-from cellcolor.motion.small_triangles import SmallTriangles, corner_states
+from cellcolor.motion.small_triangles import corner_states
 from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.transfers import Transfers
 from cellcolor.motion.ways import Transfer
@@ -78,8 +78,7 @@ def plan_motion(
     normals = painted.interpolated(built.prepared.surface.normals)
     segments = Segments(surface, segment_of, color_of, normals)
     with clock.timed("corners of small triangles"):
-        small = SmallTriangles.of(surface.mesh, normals, segment_of)
-        states = corner_states(prepared, small, own_branch, deadline)
+        states = corner_states(prepared, segments, own_branch, deadline)
     ground = Ground(prepared, segments, states, pattern, motion, deadline)
     with clock.timed("tool paths"):
         found = [
