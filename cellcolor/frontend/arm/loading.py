@@ -63,7 +63,7 @@ def load_robot(
     for fault in weight_faults(whole) if force else ():
         raise InputError(fault.file, fault.field, f"{fault.message} ({_NO_FORCE})")
     model = pinocchio_model(whole)
-    bodies, stand_ins = place_shapes(whole, model, files, folder)
+    bodies = place_shapes(whole, model, files, folder)
     tip = model.frames[model.getFrameId(files.tip_link, pin.FrameType.BODY)]
     own = [whole.joints[name] for name in model.names[1:]]
     robot = Robot(
@@ -83,7 +83,6 @@ def load_robot(
         joint_names=tuple(joint.name for joint in own),
         warnings=_warnings(whole, own),
         model=model,
-        stand_ins=stand_ins,
         tool_links=frozenset(link.name for link in tool.links.values() if link.shapes),
     )
     notes = notes_on_tool(robot, tool.root, files.tip_link)
