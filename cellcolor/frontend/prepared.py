@@ -27,8 +27,7 @@ from cellcolor.frontend.parts.rounding import note_on_triangles
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.prepared_arm import PreparedArm, prepare_arm
 from cellcolor.frontend.reach.sheets import in_sheets
-from cellcolor.frontend.reach.validity import Judge
-from cellcolor.frontend.reach.validity_tests import Workplace
+from cellcolor.frontend.reach.validity_tests import Judge, Workplace
 from cellcolor.frontend.scene import Scene
 
 _MOST_POINTS = 20_000_000  # on all mesh edges; each is tested for up to eight branches

@@ -24,7 +24,7 @@ from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.links import continuous_along, valid_along
 from cellcolor.frontend.prepared import PreparedScene, named
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
-from cellcolor.frontend.reach.validity import Verdicts
+from cellcolor.frontend.reach.validity_tests import Verdicts
 
 Apply = Callable[[PreparedScene, float], PreparedScene]
 """A scene, and by how much the restriction is weakened, infinite if it is left out: the scene with

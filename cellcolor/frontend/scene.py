@@ -31,8 +31,7 @@ from cellcolor.frontend.parts.mesh import ArraysObject
 from cellcolor.frontend.parts.placement import Placement, Tolerance, rotation_from_rpy
 from cellcolor.frontend.parts.rounding import rounded
 from cellcolor.frontend.parts.surface import PARTS, Part, Surface
-from cellcolor.frontend.reach.validity import STANDARD_REASONS
-from cellcolor.frontend.reach.validity_tests import VALIDITY_TESTS, ValidityTest
+from cellcolor.frontend.reach.validity_tests import STANDARD_REASONS, VALIDITY_TESTS, ValidityTest
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.tables import Coordinate, FileTable, Table, Vector, of_kind
 

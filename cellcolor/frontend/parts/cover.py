@@ -31,11 +31,6 @@ _POINTS = 100  # of the area that are looked at
 _ALIKE = 0.5  # of the larger side's area, at least, has the other one
 
 
-def whole_mesh(surface: Surface) -> TriangleMesh:
-    """Its mesh before edges were halved."""
-    return surface.mesh if surface.divided is None else surface.divided[0]
-
-
 def thickness(mesh: TriangleMesh) -> float | None:
     """Of a shell, the median distance in m from one side to the other behind it; None of others."""
     size = float(np.linalg.norm(np.ptp(mesh.points, axis=0)))
@@ -102,7 +97,7 @@ def inner_point(mesh: TriangleMesh, faces: Mask) -> Array:
 
 def note_on_shell(surface: Surface) -> tuple[str, ...]:
     """A sentence if a tool has to cover both sides of something thin."""
-    thick = thickness(whole_mesh(surface))
+    thick = thickness(surface.mesh if surface.divided is None else surface.divided[0])
     if thick is None:
         return ()
     return (

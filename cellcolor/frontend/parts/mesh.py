@@ -88,7 +88,10 @@ def mesh_surface(
             message = f"the part is {size}: {error.message}"
             raise InputError(error.file, error.field, message) from error
     deadline.check()
-    normals = summed_normals(mesh)
+    # trimesh's own vertex normals have length 1 already, and do not reveal faces that cancel out.
+    angles = trimesh.triangles.angles(mesh.points[mesh.corners])
+    normals = np.zeros_like(mesh.points)
+    np.add.at(normals, mesh.corners, angles[:, :, None] * mesh.triangle_normals[:, None])
     size = np.linalg.norm(normals, axis=1, keepdims=True)
     if size.min() < 1e-6:
         vertex = int(np.argmin(size))
@@ -154,17 +157,6 @@ def _check_elements(mesh: TriangleMesh) -> None:
     flat = 2 * mesh.areas <= 1e-9 * longest**2
     if flat.any():
         raise InputError(None, f"faces[{np.argmax(flat)}]", "has no area")
-
-
-def summed_normals(mesh: TriangleMesh) -> Array:
-    """Sums of the adjoining faces' unit normals, weighted with their angles at the vertex.
-
-    trimesh's own vertex normals already have length 1, so they do not reveal faces that cancel out.
-    """
-    angles = trimesh.triangles.angles(mesh.points[mesh.corners])
-    normals = np.zeros_like(mesh.points)
-    np.add.at(normals, mesh.corners, angles[:, :, None] * mesh.triangle_normals[:, None])
-    return normals
 
 
 def _coordinates(value: Any) -> Array:

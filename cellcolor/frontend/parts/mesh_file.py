@@ -24,7 +24,7 @@ from cellcolor.arrays import Array, Index, Mask, numbered
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming, system_errors
 from cellcolor.frontend.parts.mesh import check_corners, mesh_surface
-from cellcolor.frontend.parts.surface import Faces, Part, Surface, check_faces
+from cellcolor.frontend.parts.surface import MOST_VERTICES, Faces, Part, Surface
 from cellcolor.frontend.tables import Positive
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
@@ -73,7 +73,9 @@ def load_mesh(
     """
     try:
         vertices, faces = read_mesh(file, deadline)
-        check_faces(len(faces))
+        if len(faces) > 3 * MOST_VERTICES:  # there are two for each vertex, more with handles
+            message = f"there are {len(faces):,}, at most {MOST_VERTICES:,} vertices fit"
+            raise InputError(None, "faces", message)
         faces = np.ascontiguousarray(faces[:, ::-1]) if flip else faces
         return mesh_surface(vertices, faces, meters_per_unit, max_edge_m, mend, deadline)
     except InputError as error:
