@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.mesh_file import load_mesh
+from cellcolor.frontend.parts.mesh_file import MeshObject
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import (
     disc_mesh,
@@ -136,22 +136,22 @@ def test_bad_meshes_are_refused(
 ) -> None:
     file = write_obj(tmp_path / "bad.obj", vertices, faces)
     with pytest.raises(InputError, match=message) as caught:
-        load_mesh(file, 1.0)
+        MeshObject(file=str(file), meters_per_unit=1.0).surface()
     assert caught.value.file == str(file)
     assert re.match(element, caught.value.field or "")
 
 
 def test_unreadable_files(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no such mesh file"):
-        load_mesh(tmp_path / "none.stl", 1.0)
+        MeshObject(file=str(tmp_path / "none.stl"), meters_per_unit=1.0).surface()
     other = tmp_path / "mesh.step"
     other.write_text("x")
     with pytest.raises(InputError, match="not a mesh format"):
-        load_mesh(other, 1.0)
+        MeshObject(file=str(other), meters_per_unit=1.0).surface()
     broken = tmp_path / "broken.ply"
     broken.write_text("ply\nformat ascii 1.0\nelement vertex 3\n")
     with pytest.raises(InputError) as caught:
-        load_mesh(broken, 1.0)
+        MeshObject(file=str(broken), meters_per_unit=1.0).surface()
     assert caught.value.file == str(broken)
 
 
@@ -160,7 +160,7 @@ def test_mesh_files(tmp_path: Path, suffix: str) -> None:
     cap = spherical_cap(200.0, 1.2, *disc_mesh(500, 0.1, 0))
     file = tmp_path / f"cap.{suffix}"
     trimesh.Trimesh(cap.vertices, cap.faces, process=False).export(file)
-    read = load_mesh(file, 0.001)
+    read = MeshObject(file=str(file), meters_per_unit=0.001).surface()
     assert (len(read.vertices), len(read.faces)) == (len(cap.vertices), len(cap.faces))
     assert np.allclose(np.linalg.norm(read.vertices, axis=1), 0.2, atol=1e-6)
     # Normals from the faces point outward, near the sphere's own.
