@@ -23,10 +23,10 @@ import trimesh
 from cellcolor.arrays import Array, Index, Mask, numbered
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming, system_errors
-from cellcolor.frontend.parts.mesh import check_corners, mesh_surface
+from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.surface import MOST_VERTICES, Faces, Part, Surface
 from cellcolor.frontend.tables import Positive
-from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.mesh.triangle_mesh import TriangleMesh, check_corners
 
 _MOST_BYTES = 200_000_000  # some millions of triangles; reading takes ten times as much memory
 _PLY_CORNERS = ("vertex_indices", "vertex_index")
@@ -201,7 +201,7 @@ def _ply_faces(mesh: trimesh.Trimesh) -> Faces:
     rows = [np.asarray(row, dtype=np.int64) for row in (data[name] if text else data[name]["f1"])]
     sizes = np.array([len(row) for row in rows])
     vertices = np.asarray(mesh.vertices)
-    check_corners(vertices, np.asarray(mesh.faces))
+    check_corners(np.asarray(mesh.faces), len(vertices))
     return triangulated(vertices, np.concatenate(rows), sizes, lambda face: f"faces[{face}]")
 
 
