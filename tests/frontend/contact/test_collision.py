@@ -98,9 +98,7 @@ def test_tool_body_is_flat_and_ends_above_the_tip(robot: Robot) -> None:
 def test_only_the_tip_touches(robot: Robot) -> None:
     # A plate 9 mm above the tip is free, one at 11 mm cuts the tool's body.
     poses = forward(robot, tool_down(-0.3))
-    plate = CapObject(
-        radius_m=5.0, half_angle_rad=0.01, target_vertices=300, jitter=0.0, seed=0
-    ).surface()
+    plate = CapObject(radius_m=5.0, half_angle_rad=0.01, target_vertices=300).surface()
     for height, expected in ((0.009, False), (0.011, True)):
         vertices = plate.vertices - [0, 0, 5.0] + poses.tip[0] + [0, 0, height]
         assert hits(robot, mesh(plate, vertices), tool_down(-0.3))[0] == expected

@@ -94,9 +94,7 @@ def test_cap(half_angle: float) -> None:
 
 
 def test_placement_is_extrinsic_xyz() -> None:
-    cap = CapObject(
-        radius_m=0.2, half_angle_rad=1.0, target_vertices=100, jitter=0.1, seed=0
-    ).surface()
+    cap = CapObject(radius_m=0.2, half_angle_rad=1.0, target_vertices=100, jitter=0.1).surface()
     place = Placement(position_m=(1.0, 2.0, 3.0), rpy_rad=(0.3, -0.5, 0.8))
     turn = Rotation.from_euler("xyz", [0.3, -0.5, 0.8])
     placed = cap.placed(place)
@@ -156,9 +154,7 @@ def test_unreadable_files(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("suffix", ["stl", "obj", "ply"])
 def test_mesh_files(tmp_path: Path, suffix: str) -> None:
-    cap = CapObject(
-        radius_m=200.0, half_angle_rad=1.2, target_vertices=500, jitter=0.1, seed=0
-    ).surface()
+    cap = CapObject(radius_m=200.0, half_angle_rad=1.2, target_vertices=500, jitter=0.1).surface()
     file = tmp_path / f"cap.{suffix}"
     trimesh.Trimesh(cap.vertices, cap.faces, process=False).export(file)
     read = MeshObject(file=str(file), meters_per_unit=0.001).surface()
