@@ -238,9 +238,9 @@ class _Run:
                 pattern=self._pattern,
                 deadline=self._deadline,
                 progress=self._progress,
-                on_paths=lambda paths, measures: self._has(paths=paths, measures=measures),
+                on_paths=lambda paths: self._has(paths=paths),
             )
-        self._has(paths=motion.paths, measures=motion.measures)
+        self._has(paths=motion.paths)
         return _Driven(self.so_far, motion)
 
 

@@ -65,9 +65,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     def motion(built: Any, *_: Any, **options: Any) -> Any:
         seen.update(options, motion=built.prepared.setup.motion, built=built)
         trajectory = replace(made.trajectory, unplanned=seen["unplanned"], extra_lift_offs=())
-        return SimpleNamespace(
-            paths=made.paths, measures=made.measures, trajectory=trajectory, cut_off=()
-        )
+        return SimpleNamespace(paths=made.paths, trajectory=trajectory, cut_off=())
 
     def verdict(*_: Any, **options: Any) -> TrajectoryVerdict:
         seen.update(options)
@@ -206,7 +204,7 @@ def out_of_time(laid: bool) -> Any:
 
     def motion(*_: Any, on_paths: Any, **__: Any) -> None:
         if laid:
-            on_paths(made.paths, made.measures)
+            on_paths(made.paths)
         raise OutOfTime("the time limit came first")
 
     return motion
