@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from cellcolor.cli.ending import INTERRUPTS, Exit
+from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import (
     COUNT,
     INPUT,
@@ -23,7 +23,7 @@ from cellcolor.cli.options import (
     option,
     output_option,
 )
-from cellcolor.cli.terminal import complain, say, say_lines
+from cellcolor.cli.terminal import at_work, complain, say, say_lines
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.writing import (
@@ -173,38 +173,24 @@ def check(seconds: float, **given: Any) -> Exit:
 @click.argument("file", metavar="FILE", type=INPUT)
 @click.argument("claim", metavar="[SOLUTION.json|PLAN.json]", required=False, type=INPUT)
 @output_option("OUT.(html|png|svg)", "The picture; the ending gives its format.", required=True)
-@option(
-    "--view",
-    click.Choice(list(PICTURES)),
-    f"The picture: {', '.join(PICTURES)}. The options below and a second file choose one as well.",
-    metavar="NAME",
-)
-@keywords(color=str, vertex=int, branch=str)
-def show(file: Path, claim: Path | None, output: Path, view: str | None, **of: Any) -> Exit:
+@keywords(view=click.Choice(list(PICTURES)), color=str, vertex=int, branch=str)
+def show(file: Path, claim: Path | None, output: Path, **of: Any) -> Exit:
     """Draw an instance, a labelled surface or a scene, by cell unless an option says otherwise.
 
     With a solution after what was solved, or a plan on its surface: by segment.
     """
     from cellcolor.cli.inputs import open_file
     from cellcolor.data.plan import Plan
-    from cellcolor.door.drawing import draw, kind_of_picture, picture_of
-    from cellcolor.door.installed import extras_for
+    from cellcolor.door.drawing import kind_of_picture
+    from cellcolor.door.drawing import show as drawing_of
     from cellcolor.door.reading import format_of_claim
 
-    inputs = [file, *filter(None, [claim])]
-    kind = kind_of_picture(output)
-    check_output(output, kind, inputs)
-    of["plan" if claim and format_of_claim(claim) == Plan.FORMAT else "solution"] = claim
-    with extras_for(file):
-        try:
-            picture = picture_of(view, "cells", of)
-        except InputError as error:  # what is wrong is an option, not a file
-            raise click.UsageError(str(error)) from error
+    check_output(output, kind_of_picture(output), [file, *filter(None, [claim])])
+    if claim is not None:
+        of["plan" if format_of_claim(claim) == Plan.FORMAT else "solution"] = claim
     subject = open_file(file)
-    with extras_for(output):
-        drawing = draw(picture, subject, of)
-        content = drawing.render(output.suffix)
-    INTERRUPTS.check()
-    write([Output(output, kind, [content])], inputs)
+    with at_work(file, "drawing"):
+        drawing = drawing_of(subject, **of)
+    drawing.save(output)
     say(f"wrote {output}: {drawing}")
     return Exit.DONE

@@ -85,10 +85,7 @@ def paint(source: Path, claim: Path, output: Path, time_limit: Deadline, **wante
 
 
 def _about(painted: Painted) -> Iterator[str]:
-    """Borders of a painting, what a scene refused of it, and segments that are one on the mesh."""
-    if painted.borders is not None and painted.segments > 1:
-        before, after = painted.borders.before, painted.borders.after
-        yield f"borders: {after.length_m:.4g} m, {before.length_m:.4g} m as first drawn"
+    """What a scene refused of a painting, and segments that are one on the mesh."""
     if len(painted.minima) > 1:
         yield f"the scene rejects copied colors: {count(painted.minima[0], 'segment')} as solved,"
         yield f"{painted.segments} after solving again with the true colors of the refined surface"

@@ -55,21 +55,17 @@ def inspect(part: Path, output: Path | None, as_json: bool, **wanted: Any) -> Ex
     from cellcolor.door.drawing import Drawing, kind_of_picture
 
     if output is not None:
-        kind = kind_of_picture(output)
-        check_output(output, kind, [part])
+        check_output(output, kind_of_picture(output), [part])
     with at_work(part, "inspecting") as tell:
         found = parts.inspect(part, progress=tell, **wanted)
-        if output is not None:
-            tell("drawing")
-            from cellcolor.pictures.mesh_picture import faulty_part
-
-            drawn = Drawing(faulty_part(found)).render(output.suffix)
     if as_json:
         print_json(found.to_dict())
     else:
         say_lines(found)
     if output is not None:
-        write([Output(output, kind, [drawn])], [part])
+        from cellcolor.pictures.mesh_picture import faulty_part
+
+        Drawing(faulty_part(found)).save(output)
         if not as_json:
             say(f"wrote {output}")
     return Exit.DONE

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -33,7 +32,7 @@ from cellcolor.files.writing import (
     write,
 )
 from cellcolor.signals import handled_by
-from cellcolor.solvers.interface import PORTFOLIO, Options
+from cellcolor.solvers.interface import Options
 from cellcolor.solvers.registry import solver_names
 
 _SOLUTION = kind_of_format(Solution.FORMAT)
@@ -126,7 +125,7 @@ def _told(file: Path, result: Result, of_a_part: bool, as_json: bool) -> Exit:
 
 
 def _check_able(search: dict[str, Any], every: bool) -> None:
-    """Refuse at once what the solver cannot do for any file; tell of too many workers.
+    """Refuse at once what the solver cannot do for any file.
 
     What every solver can do is not asked about: bad input has to import no solver.
     """
@@ -137,10 +136,6 @@ def _check_able(search: dict[str, Any], every: bool) -> None:
         from cellcolor.solvers.checked import check_able
 
         check_able(search["solver"], options, schemes=every)
-    workers, cores = search.get("workers", 1), os.cpu_count() or 1
-    # More workers than processors are useful in a portfolio, and slow beyond it.
-    if workers > max(cores, PORTFOLIO):
-        complain(f"{workers} workers share {cores} processors")
 
 
 def _targets(files: Sequence[Path], output: Path | None, every: bool) -> list[Path | None]:

@@ -64,18 +64,18 @@ def colors_of_joints(
         message = f"{len(joints)} rows for {len(surface.vertices)} vertices"
         raise InputError(None, "joints", message)
     given = np.flatnonzero(~np.isnan(joints).all(axis=1))
-    found = at_vertices(built, given, joints[given], deadline)
+    found, why = at_vertices(built, given, joints[given], deadline)
     colors: list[int | None] = [None] * len(joints)
     reasons: dict[int, str] = {
         vertex: f"no configuration, but colors {list(own)} reach this vertex"
         for vertex, own in enumerate(surface.vertex_colors)
         if own
     }
-    for row, (vertex, color) in enumerate(zip(given.tolist(), found.color.tolist(), strict=True)):
+    for row, (vertex, color) in enumerate(zip(given.tolist(), found.tolist(), strict=True)):
         colors[vertex] = color if color >= 0 else _NO_COLOR
         reasons.pop(vertex, None)
         if color < 0:
-            reasons[vertex] = found.why_none(row)
+            reasons[vertex] = why[row]
     violations = tuple(
         _violation(built, vertex, reasons[vertex], joints[vertex]) for vertex in sorted(reasons)
     )
@@ -101,17 +101,13 @@ def path_verdict(subject: Subject, given: AnyPath, deadline: Deadline = NEVER) -
     coloring = coloring_of(surface, found.contacts)
     reachable = [vertex for vertex, own in enumerate(surface.vertex_colors) if own]
     missing = [v for v in reachable if coloring.plan.vertex_colors[v] is None]
-    rows: dict[int, int] = {}  # the first contact of each vertex in no color
-    for row, vertex in enumerate(found.in_no_color.vertex.tolist()):
-        rows.setdefault(vertex, row)
     violations = []
     for vertex in missing:
         joints: Array | None = None
-        if vertex in rows:
-            row = rows[vertex]
-            sample = int(found.sample[row])
+        if vertex in found.in_no_color:
+            sample, why = found.in_no_color[vertex]
             joints = path.joints[sample]
-            reason = f"in contact at sample {sample}, but {found.in_no_color.why_none(row)}"
+            reason = f"in contact at sample {sample}, but {why}"
         elif np.isinf(found.nearest[vertex]):
             reason = "no contact"
         else:
@@ -119,7 +115,7 @@ def path_verdict(subject: Subject, given: AnyPath, deadline: Deadline = NEVER) -
         violations.append(_violation(built, vertex, reason, joints))
     misplaced = [
         f"points[{sample}]: the joints put the tip {1000 * by:.4g} mm from there"
-        for sample, by in zip(found.misplaced.tolist(), found.misplaced_by.tolist(), strict=True)
+        for sample, by in found.misplaced.items()
     ]
     problems = (*misplaced, *map(str, violations))
     return PathVerdict(

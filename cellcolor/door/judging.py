@@ -122,11 +122,10 @@ def judge_trajectory(
     with extras_for("the front end"):
         from cellcolor.trajectory_checker.check import check_trajectory
         from cellcolor.trajectory_checker.stated import completed
-        from cellcolor.trajectory_checker.tolerances import Limits
 
     report = progress or (lambda _: None)
     timed = isinstance(given, Trajectory) or given.times is not None
-    limits = Limits(silent=isinstance(given, TrajectoryTable))
+    silent = isinstance(given, TrajectoryTable)
     if isinstance(given, TrajectoryTable):
         given = completed(given, built.robot, deadline)
     report("proven minimum")
@@ -137,7 +136,7 @@ def judge_trajectory(
         given,
         timed=timed,
         minimum_lift_offs=lift_offs_of(bounds.lower) if bounds.exact else None,
-        limits=limits,
+        silent=silent,
         deadline=deadline,
         progress=progress,
     )

@@ -45,10 +45,10 @@ def paint(
 
     Returns:
         A plan that the checker finds valid, on the surface refined where necessary. It has
-        exactly as many segments as the solution if these are proved to be the fewest. ``borders``
-        says what moving its borders has changed. For a scene the robot is asked about each new
-        vertex. If it cannot reach one, the refined surface is solved and painted instead, with as
-        many segments as that needs (:mod:`cellcolor.motion.scene_painting`).
+        exactly as many segments as the solution if these are proved to be the fewest. For a scene
+        the robot is asked about each new vertex. If it cannot reach one, the refined surface is
+        solved and painted instead, with as many segments as that needs
+        (:mod:`cellcolor.motion.scene_painting`).
 
     Raises:
         InputError: one of the two cannot be used, they do not belong together, or the radius is not

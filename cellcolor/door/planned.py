@@ -42,7 +42,6 @@ if TYPE_CHECKING:
     from cellcolor.frontend import BuildReport, BuildResult
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.pictures.report_page.content import AnsweredScene
-    from cellcolor.tool_paths.measures import PathMeasures
 
 
 @dataclass(frozen=True, repr=False, eq=False, kw_only=True)
@@ -54,7 +53,6 @@ class UnfinishedPlan:
         result: the fewest segments that were found, and what is proved; None before the search.
         painted: the segments on the surface, if they were painted.
         paths: where the tool goes, if that was laid out.
-        measures: of each of these paths.
         trajectory: how the arm moves; none leaves the program without having been judged.
         verdict: an independent judge's on it.
         seconds: wall time of each stage.
@@ -66,7 +64,6 @@ class UnfinishedPlan:
     result: Result | None = None
     painted: Painted | None = None
     paths: ToolPaths | None = None
-    measures: tuple[PathMeasures, ...] = ()
     trajectory: Trajectory | None = None
     verdict: TrajectoryVerdict | None = None
     seconds: Mapping[str, float] = field(default_factory=dict)

@@ -52,13 +52,12 @@ def arm_of(
     fixed = _fixed_of(arm, in_chain, fix)
     with naming(urdf):
         still = settled(arm, fixed)
-    moving = arm.leading.keys() - still
-    moved = next((at for at, name in enumerate(in_chain, 1) if name in moving), 0)
-    weightless = bool(weight_faults(arm, still))
+    moved = next((at for at, name in enumerate(in_chain, 1) if name in still.leading), 0)
+    weightless = bool(weight_faults(still))
     if tool is not None:
         own = load_urdf(tool)
         weightless |= any(link.shapes and link.weightless for link in own.links.values())
-    position, turn = mount_of(arm, flange, still)
+    position, turn = mount_of(still, flange)
     keys = {
         "arm": urdf.name,
         "arm_urdf": json.dumps(relative(urdf, folder)),
@@ -122,18 +121,18 @@ def _fixed_of(arm: Urdf, in_chain: Sequence[str], given: Mapping[str, float]) ->
     return fixed
 
 
-def mount_of(arm: Urdf, flange: str, still: Mapping[str, float]) -> tuple[list[float], list[float]]:
+def mount_of(arm: Urdf, flange: str) -> tuple[list[float], list[float]]:
     """Position, m, and turn, rad, that put the tool's z axis onto the last joint's.
 
     Some vendors' flanges have their x axis along that of the joint, or lie a little beside it.
 
     Args:
-        still: the positions of joints that stand still.
+        arm: with all joints fixed that stand still.
     """
     from cellcolor.frontend.arm.assembly import last_axis
     from cellcolor.frontend.parts.placement import rpy_from_rotation
 
-    (x, y, z), beside = last_axis(arm, flange, still)
+    (x, y, z), beside = last_axis(arm, flange)
     measured = _OFF < np.linalg.norm(beside) < _MOST_OFF
     if np.hypot(x, y) < _ALONG:
         turn = np.diag([1, np.sign(z), np.sign(z)])

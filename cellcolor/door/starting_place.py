@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from cellcolor.arrays import Array, Index
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.frontend.reach.prepared_arm import PreparedArm
-    from cellcolor.frontend.reach.validity import Verdicts
+    from cellcolor.frontend.reach.validity_tests import Verdicts
     from cellcolor.frontend.scene import Scene
 
 _MOST_ASKED = 300  # vertices of the part, wherever it is tried

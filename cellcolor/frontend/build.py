@@ -27,7 +27,7 @@ from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import Coloring, color_nodes
 from cellcolor.frontend.reach.limit_colors import LimitColors, limit_colors
 from cellcolor.frontend.reach.slivers import SliverReport, clean
-from cellcolor.frontend.reach.validity import Verdicts
+from cellcolor.frontend.reach.validity_tests import Verdicts
 from cellcolor.frontend.report import BuildReport, report_on
 from cellcolor.frontend.scene import Scene
 from cellcolor.version import __version__

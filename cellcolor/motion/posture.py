@@ -14,7 +14,7 @@ from cellcolor.decomposition import Decomposition
 from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult
-from cellcolor.frontend.reach.validity import Verdicts
+from cellcolor.frontend.reach.validity_tests import Verdicts
 from cellcolor.motion.following import joint_space
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.preferring import cost_of, preferred

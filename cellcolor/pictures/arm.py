@@ -18,7 +18,6 @@ from cellcolor.pictures.picture import FAINT, Layer, Picture3D, SpaceLines, Text
 
 BESIDE = (28, 40)
 """The heights to look from, degrees, so that arm and part are seen side by side."""
-_AROUND = 20
 _GRID = 13
 OBSTACLE, BODY, GROUND = "#882255", "#C8C4B0", "#9AA3AF"
 _LINKS = ("#AEB6C2", "#7F8A9B")  # alternating
@@ -115,34 +114,10 @@ def arm_points(robot: Robot, joints: Array) -> Array:
     return np.concatenate([_placed(body, poses)[0] for body in robot.bodies])
 
 
-def body_mesh(body: Body) -> _Mesh:
-    """Points (k, 3) in m and triangles (t, 3) of a body, in the frame of its joint."""
-    if body.solid is not None:
-        return body.solid.vertices, body.solid.faces
-    return _round(body)
-
-
 def _placed(body: Body, poses: Poses) -> _Mesh:
-    points, triangles = body_mesh(body)
+    points, triangles = body.shape.shell()
     turned = points @ poses.rotation[0, body.joint].T + poses.origin[0, body.joint]
     return turned, triangles
-
-
-def _round(body: Body) -> _Mesh:
-    """All points within a radius of a segment, or a flat-ended cylinder around it."""
-    from trimesh.creation import capsule, cylinder
-    from trimesh.geometry import align_vectors
-
-    axis = body.end - body.start
-    length = float(np.linalg.norm(axis))
-    if body.flat:
-        made = cylinder(body.radius, length, sections=_AROUND)
-    else:
-        made = capsule(length, body.radius, (_AROUND, _AROUND))
-        made.apply_translation(-made.bounds.mean(axis=0))
-    turn = align_vectors([0, 0, 1], axis)[:3, :3] if length else np.eye(3)
-    middle = (body.start + body.end) / 2
-    return made.vertices @ turn.T + middle, made.faces.astype(np.int64)
 
 
 def grid(ground: Shape, points: Array) -> SpaceLines:

@@ -20,8 +20,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.body import Body, Shape
 from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.reach.validity import STANDARD_REASONS
-from cellcolor.frontend.reach.validity_tests import Workplace
+from cellcolor.frontend.reach.validity_tests import STANDARD_REASONS, Workplace
 from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList

@@ -101,7 +101,7 @@ def test_the_tool_is_turned_onto_the_last_axis(rpy: tuple[float, float, float], 
     assert usual in text
     turned = " ".join(map(repr, rpy))
     text = text.replace(usual, f'<origin xyz="{xyz}" rpy="{turned}"/>')
-    _, mount = mount_of(parse_urdf(text, Path("arm.urdf")), "tool0", {})
+    _, mount = mount_of(parse_urdf(text, Path("arm.urdf")), "tool0")
     tool = (Rotation.from_euler("xyz", rpy) * Rotation.from_euler("xyz", mount)).apply([0, 0, 1])
     outward = -1.0 if xyz.startswith("-") else 1.0
     assert np.allclose(tool, [outward, 0, 0], atol=2e-3)

@@ -42,7 +42,7 @@ def mount(arm: Urdf, flange: str, tool: Urdf, position: Vector, rpy: Vector) -> 
     shared += [f"joint[{name}]" for name in tool.joints if name in arm.joints]
     if shared:
         raise InputError(str(tool.file), shared[0], f"{arm.file.name} has that name too")
-    joint = Joint("tool_mount", tool.file, flange, tool.root, pose(position, rpy))
+    joint = Joint("", tool.file, flange, tool.root, pose(position, rpy))
     return replace(
         arm,
         links=arm.links | tool.links,
@@ -51,26 +51,22 @@ def mount(arm: Urdf, flange: str, tool: Urdf, position: Vector, rpy: Vector) -> 
     )
 
 
-def settled(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, float]:
-    """The positions of all joints that stand still, rad, or m of prismatic ones.
+def settled(urdf: Urdf, positions: Mapping[str, float]) -> Urdf:
+    """The tree with all joints that stand still as fixed ones, so that none follows another one.
 
     What follows such a joint stands still as well. A leader that is a fixed joint is at zero.
 
     Args:
-        positions: of joints that are fixed.
+        positions: of joints that are fixed, rad, or m of prismatic ones.
 
     Raises:
         InputError: a position is outside of the joint's limits; or a joint follows one that moves,
             one that is not there, or itself.
     """
-    joints, standing = urdf.joints, {}
-    for name, position in positions.items():
-        if name in joints:
-            _check_position(joints[name], position)
-            standing[name] = position
+    joints, still = urdf.joints, {}
     for name, joint in joints.items():
         if name in positions:
-            continue
+            _check_position(joint, positions[name])
         leader, factor, offset, seen = joint, 1.0, 0.0, {name}
         while leader.follows is not None and leader.name not in positions:
             followed, multiplier, more = leader.follows
@@ -80,13 +76,15 @@ def settled(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, float]:
             factor, offset = factor * multiplier, offset + factor * more
             leader = joints[followed]
             seen.add(followed)
-        if leader is joint:
-            continue
         if leader.kind != FIXED and leader.name not in positions and factor:
+            if leader is joint:
+                continue
             fault = f"follows {leader.name!r}, which moves: {FIX.format(name)}"
             raise joint.refused(fault, ".mimic")
-        standing[name] = factor * positions.get(leader.name, 0.0) + offset
-    return standing
+        place = joint.at(factor * positions.get(leader.name, 0.0) + offset)
+        still[name] = replace(joint, kind=FIXED, place=place, follows=None)
+    above = {link: still.get(joint.name, joint) for link, joint in urdf.above.items()}
+    return replace(urdf, joints=joints | still, above=above)
 
 
 def _check_position(joint: Joint, position: float) -> None:
@@ -98,32 +96,24 @@ def _check_position(joint: Joint, position: float) -> None:
         raise InputError(None, f"robot.fixed_joints.{joint.name}", message)
 
 
-def pinocchio_model(urdf: Urdf, standing: Mapping[str, float]) -> pin.Model:
-    """Pinocchio's model of the joints that move, with masses, and a frame for each link.
-
-    Args:
-        standing: the positions of the joints that do not, rad, or m of prismatic ones.
-    """
+def pinocchio_model(urdf: Urdf) -> pin.Model:
+    """Pinocchio's model of the joints that move, with masses, and a frame for each link."""
     model, links = pin.Model(), [urdf.root]
     for name in links:  # which grows by the links that hang on this one
         links += [joint.child for joint in urdf.above.values() if joint.parent == name]
         link, above, number, place, over = urdf.links[name], urdf.above.get(name), 0, _HERE, 0
         if above is not None:
             over = model.getFrameId(above.parent, pin.FrameType.BODY)
-            number, place = model.frames[over].parentJoint, model.frames[over].placement
-            if above.kind == FIXED or above.name in standing:
-                place = place * above.at(standing.get(above.name, 0.0))
-            else:
-                slides = above.kind == PRISMATIC
-                kind = (
-                    pin.JointModelPrismaticUnaligned if slides else pin.JointModelRevoluteUnaligned
-                )
-                number = model.addJoint(number, kind(above.axis), place * above.place, above.name)
-                over, place = model.addJointFrame(number, over), _HERE
+            number = model.frames[over].parentJoint
+            place = model.frames[over].placement * above.place
+        if above is not None and above.kind != FIXED:
+            slides = above.kind == PRISMATIC
+            kind = pin.JointModelPrismaticUnaligned if slides else pin.JointModelRevoluteUnaligned
+            number = model.addJoint(number, kind(above.axis), place, above.name)
+            over, place = model.addJointFrame(number, over), _HERE
         # No inertia is asked for.
-        model.appendBodyToJoint(
-            number, pin.Inertia(link.mass, link.center, np.zeros((3, 3))), place
-        )
+        inertia = pin.Inertia(link.mass, link.center, np.zeros((3, 3)))
+        model.appendBodyToJoint(number, inertia, place)
         model.addBodyFrame(name, number, place, over)
     return model
 
@@ -132,15 +122,12 @@ _HERE = pin.SE3.Identity()
 _AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
 
 
-def last_axis(urdf: Urdf, flange: str, standing: Mapping[str, float]) -> tuple[Array, Array]:
+def last_axis(urdf: Urdf, flange: str) -> tuple[Array, Array]:
     """The last axis (3,) before the flange, in its frame, and how far beside it the flange is, m.
 
     The axis points outward with all joints at zero.
-
-    Args:
-        standing: see :func:`pinocchio_model`.
     """
-    model = pinocchio_model(urdf, standing)
+    model = pinocchio_model(urdf)
     data = model.createData()
     pin.framesForwardKinematics(model, data, np.zeros(model.nq))
     frame = model.frames[model.getFrameId(flange, pin.FrameType.BODY)]

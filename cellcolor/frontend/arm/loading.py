@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -58,19 +58,18 @@ def load_robot(
         message = "the tip link is not in the tool"
         raise InputError(str(tool.file), f"link[{files.tip_link}]", message)
     whole = mount(arm, files.flange_link, tool, files.mount_position_m, files.mount_rpy_rad)
-    standing = settled(whole, files.fixed_joints)
-    _check_chain(whole, standing, tool, files.tip_link, (joints - prismatic, prismatic))
-    for fault in weight_faults(whole, standing) if force else ():
+    whole = settled(whole, files.fixed_joints)
+    _check_chain(whole, tool, files.tip_link, (joints - prismatic, prismatic))
+    for fault in weight_faults(whole) if force else ():
         raise InputError(fault.file, fault.field, f"{fault.message} ({_NO_FORCE})")
-    model = pinocchio_model(whole, standing)
-    bodies, stand_ins = place_shapes(whole, model, files, folder)
+    model = pinocchio_model(whole)
+    bodies = place_shapes(whole, model, files, folder)
     tip = model.frames[model.getFrameId(files.tip_link, pin.FrameType.BODY)]
     own = [whole.joints[name] for name in model.names[1:]]
-    axes = np.array([joint.axis for joint in own]).reshape(-1, 3)
-    return Robot(
+    robot = Robot(
         files=(arm.file, tool.file),
         placement=np.array([each.homogeneous for each in list(model.jointPlacements)[1:]]),
-        axis=axes,
+        axis=np.array([joint.axis for joint in own]).reshape(-1, 3),
         slides=np.array([joint.kind == PRISMATIC for joint in own], dtype=bool),
         lower=np.array([joint.lower for joint in own]),
         upper=np.array([joint.upper for joint in own]),
@@ -82,19 +81,18 @@ def load_robot(
         bodies=bodies,
         tested_pairs=_tested_pairs(whole, bodies, files.may_touch),
         joint_names=tuple(joint.name for joint in own),
-        warnings=_warnings(whole, own) + notes_on_tool(model, tool.root, files.tip_link, axes),
+        warnings=_warnings(whole, own),
         model=model,
-        stand_ins=stand_ins,
         tool_links=frozenset(link.name for link in tool.links.values() if link.shapes),
     )
+    notes = notes_on_tool(robot, tool.root, files.tip_link)
+    return replace(robot, warnings=robot.warnings + notes)
 
 
-def _check_chain(
-    whole: Urdf, standing: Mapping[str, float], tool: Urdf, tip_link: str, wanted: tuple[int, int]
-) -> None:
+def _check_chain(whole: Urdf, tool: Urdf, tip_link: str, wanted: tuple[int, int]) -> None:
     """Require these numbers of turning and prismatic joints from base to tip, none elsewhere."""
     in_chain = [whole.above[link] for link in whole.chain(tip_link)[1:]]
-    moving = [joint for name, joint in whole.leading.items() if name not in standing]
+    moving = whole.leading.values()
     for joint in moving:
         if joint.name in tool.joints:
             raise joint.refused(f"a tool may not move: {FIX.format(joint.name)}")
@@ -121,15 +119,15 @@ def _counted(joints: tuple[int, int]) -> str:
     return f"{turning} revolute joints" + (f" and {sliding} prismatic" if sliding else "")
 
 
-def weight_faults(urdf: Urdf, standing: Mapping[str, float]) -> list[InputError]:
+def weight_faults(urdf: Urdf) -> list[InputError]:
     """What keeps the force constraint from being tested; what nothing moves may weigh anything.
 
     Args:
-        standing: joints that stand still.
+        urdf: with all joints fixed that stand still.
     """
-    moving = {name: joint for name, joint in urdf.leading.items() if name not in standing}
-    driven = {joint.child for joint in moving.values()}
-    owners = [(joint.file, joint.powerless) for joint in moving.values()]
+    moving = urdf.leading.values()
+    driven = {joint.child for joint in moving}
+    owners = [(joint.file, joint.powerless) for joint in moving]
     owners += [
         (link.file, link.weightless)
         for name, link in urdf.links.items()

@@ -98,6 +98,8 @@ class Joint:
 
     def at(self, position: float) -> pin.SE3:
         """The frame behind it in that of the parent, at a position in rad or m."""
+        if self.kind == FIXED:
+            return self.place
         if self.kind == PRISMATIC:
             return self.place * pin.SE3(np.eye(3), position * self.axis)
         return self.place * pin.SE3(pin.exp3(position * self.axis), np.zeros(3))

@@ -6,7 +6,6 @@ the regions that can be chosen.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated, Self
 
 import igl
@@ -17,7 +16,6 @@ from cellcolor.arrays import Array, Index, Mask, angles_between
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.files.documents import read_text
 from cellcolor.frontend.parts.mending import in_words
 from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.surface import Surface
@@ -31,11 +29,6 @@ _THIN = 0.03  # of the part's size; a side so near behind another makes a shell
 _MOSTLY = 0.6  # of the area, for the part to be one
 _POINTS = 100  # of the area that are looked at
 _ALIKE = 0.5  # of the larger side's area, at least, has the other one
-
-
-def whole_mesh(surface: Surface) -> TriangleMesh:
-    """Its mesh before edges were halved."""
-    return surface.mesh if surface.divided is None else surface.divided[0]
 
 
 def thickness(mesh: TriangleMesh) -> float | None:
@@ -104,7 +97,7 @@ def inner_point(mesh: TriangleMesh, faces: Mask) -> Array:
 
 def note_on_shell(surface: Surface) -> tuple[str, ...]:
     """A sentence if a tool has to cover both sides of something thin."""
-    thick = thickness(whole_mesh(surface))
+    thick = thickness(surface.mesh if surface.divided is None else surface.divided[0])
     if thick is None:
         return ()
     return (
@@ -162,14 +155,12 @@ class Cover(Table):
     Attributes:
         component: the number of a component: faces connected by edges, numbered from the
             largest area, 0, to the smallest.
-        faces_file: a text with the number of a face on each line, from 0.
     """
 
     normal: NormalCone | None = None
     box: Box | None = None
     component: Annotated[int, Field(ge=0)] | None = None
     region: Region | None = None
-    faces_file: str | None = None
 
     @model_validator(mode="after")
     def _something(self) -> Self:
@@ -177,7 +168,7 @@ class Cover(Table):
             raise ValueError(f"needs one of {', '.join(type(self).model_fields)}")
         return self
 
-    def patch(self, whole: Surface, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:
+    def patch(self, whole: Surface, deadline: Deadline = NEVER) -> Surface:
         """The faces that are to be covered, as a surface of its own.
 
         Vertices keep their order. Normals on the patch's border are those of its own faces: beside
@@ -185,13 +176,12 @@ class Cover(Table):
 
         Args:
             whole: the object, in its own frame.
-            folder: what ``faces_file`` is relative to.
 
         Raises:
             InputError: no face is chosen, or every face of a closed object; the patch is no
-                manifold; there is no such component or face.
+                manifold; there is no such component.
         """
-        chosen = self.chosen(whole, folder)
+        chosen = self.chosen(whole)
         deadline.check()
         if not chosen.any():
             raise InputError(None, "cover", f"chooses none of {count(len(chosen), 'face')}")
@@ -203,7 +193,7 @@ class Cover(Table):
         try:
             patch = mesh_surface(whole.vertices[used], compact, deadline=deadline)
         except InputError as error:
-            place = _in_whole(error.field, whole, used, np.flatnonzero(chosen))
+            place = _in_whole(error.field, whole, used)
             message = f"chooses a patch that cannot be covered: {place}{error.message}"
             raise InputError(None, "cover", message) from error
         inside = np.bincount(faces.ravel(), minlength=len(whole.vertices)) == np.bincount(
@@ -212,7 +202,7 @@ class Cover(Table):
         normals = np.where(inside[used][:, None], whole.normals[used], patch.normals)
         return Surface(patch.vertices, patch.faces, normals, whole.faceted)
 
-    def chosen(self, whole: Surface, folder: Path = Path()) -> Mask:
+    def chosen(self, whole: Surface) -> Mask:
         """Which faces (m,) of the object are chosen; see :meth:`patch`."""
         chosen = np.ones(len(whole.faces), dtype=bool)
         if self.normal is not None:
@@ -235,39 +225,17 @@ class Cover(Table):
             seed = np.array([self.region.seed_m])
             face = igl.point_mesh_squared_distance(seed, whole.vertices, whole.faces)[1][0]
             chosen &= part == part[face]
-        if self.faces_file is not None:
-            chosen &= _listed(folder / self.faces_file, len(chosen))
         return chosen
 
 
-def _listed(file: Path, faces: int) -> Mask:
-    """The faces whose numbers stand in a file, one on each line."""
-    listed = np.zeros(faces, dtype=bool)
-    for number, line in enumerate(read_text(file).splitlines(), start=1):
-        if not line.strip():
-            continue
-        try:
-            face = int(line)
-        except ValueError as error:
-            message = "needs the number of a face"
-            raise InputError(str(file), f"line {number}", message) from error
-        if not 0 <= face < faces:
-            message = f"there is no face {face}: the object has {faces:,}"
-            raise InputError(str(file), f"line {number}", message)
-        listed[face] = True
-    return listed
-
-
-def _in_whole(field: str | None, whole: Surface, vertices: Index, faces: Index) -> str:
+def _in_whole(field: str | None, whole: Surface, vertices: Index) -> str:
     """``vertices[3]`` of the patch as that of the object, with a colon.
 
     By its place where edges were halved: no file has those numbers.
     """
-    for name, numbers in (("vertices", vertices), ("faces", faces)):
-        if field is not None and field.startswith(f"{name}["):
-            own = int(field.removeprefix(f"{name}[").partition("]")[0])
-            if whole.divided is None:
-                return f"{name}[{numbers[own]}]: "
-            corners = numbers[own] if name == "vertices" else whole.faces[numbers[own]]
-            return f"near {in_words(whole.vertices[corners].reshape(-1, 3).mean(axis=0))} m: "
-    return ""
+    if field is None or not field.startswith("vertices["):
+        return ""
+    vertex = vertices[int(field.removeprefix("vertices[").removesuffix("]"))]
+    if whole.divided is None:
+        return f"vertices[{vertex}]: "
+    return f"near {in_words(whole.vertices[vertex])} m: "

@@ -26,7 +26,7 @@ from cellcolor.frontend.parts.mending import (
     used,
 )
 from cellcolor.frontend.parts.surface import Faces, Part, Surface, check_vertices, refine
-from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.mesh.triangle_mesh import TriangleMesh, check_corners
 
 _FARTHEST, _SMALLEST = 1e6, 1e-6  # m
 
@@ -59,7 +59,7 @@ def mesh_surface(
             fit, before or after halving edges.
     """
     deadline.check()
-    check_corners(vertices, faces)  # here already: a repair would take -1 for the last one
+    check_corners(faces, len(vertices))  # here already: a repair would take -1 for the last one
     if mend and len(faces) and np.isfinite(vertices).all():
         # Sizes first: a triangle that is far too long for a unit looks like one without area.
         _check_size(vertices[np.unique(faces)], meters_per_unit)
@@ -88,7 +88,10 @@ def mesh_surface(
             message = f"the part is {size}: {error.message}"
             raise InputError(error.file, error.field, message) from error
     deadline.check()
-    normals = summed_normals(mesh)
+    # trimesh's own vertex normals have length 1 already, and do not reveal faces that cancel out.
+    angles = trimesh.triangles.angles(mesh.points[mesh.corners])
+    normals = np.zeros_like(mesh.points)
+    np.add.at(normals, mesh.corners, angles[:, :, None] * mesh.triangle_normals[:, None])
     size = np.linalg.norm(normals, axis=1, keepdims=True)
     if size.min() < 1e-6:
         vertex = int(np.argmin(size))
@@ -104,19 +107,6 @@ def mesh_surface(
     normals /= size
     points = mesh.points * meters_per_unit
     return Surface(points, mesh.corners, normals, faceted=True, divided=divided)
-
-
-def check_corners(vertices: Array, faces: Faces) -> None:
-    """Refuse a face that has a vertex which is not there.
-
-    Raises:
-        InputError: names the corner.
-    """
-    unknown = np.argwhere((faces < 0) | (faces >= len(vertices)))
-    if len(unknown):
-        face, corner = unknown[0]
-        message = f"there is no vertex {faces[face, corner]}"
-        raise InputError(None, f"faces[{face}][{corner}]", message)
 
 
 def _repaired(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
@@ -154,17 +144,6 @@ def _check_elements(mesh: TriangleMesh) -> None:
     flat = 2 * mesh.areas <= 1e-9 * longest**2
     if flat.any():
         raise InputError(None, f"faces[{np.argmax(flat)}]", "has no area")
-
-
-def summed_normals(mesh: TriangleMesh) -> Array:
-    """Sums of the adjoining faces' unit normals, weighted with their angles at the vertex.
-
-    trimesh's own vertex normals already have length 1, so they do not reveal faces that cancel out.
-    """
-    angles = trimesh.triangles.angles(mesh.points[mesh.corners])
-    normals = np.zeros_like(mesh.points)
-    np.add.at(normals, mesh.corners, angles[:, :, None] * mesh.triangle_normals[:, None])
-    return normals
 
 
 def _coordinates(value: Any) -> Array:

@@ -38,7 +38,7 @@ from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.prepared_arm import PreparedArm
 from cellcolor.frontend.reach.smooth import Solutions, Tracker
-from cellcolor.frontend.reach.validity import Judge
+from cellcolor.frontend.reach.validity_tests import Judge
 from cellcolor.memory import chunks
 
 MOST_SHEETS = 60

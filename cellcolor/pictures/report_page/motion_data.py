@@ -28,7 +28,6 @@ from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.pictures.arm import (
     BESIDE,
     arm_points,
-    body_mesh,
     draw_arm,
     grid,
     link_fills,
@@ -159,7 +158,7 @@ def _bodies(robot: Robot) -> list[dict[str, Any]]:
     """The collision shapes, since these are what is tested, in the frames of their joints."""
     fills = link_fills(robot)
     return [
-        layer_data(Layer("arm", fills[body.link], *body_mesh(body)), body.joint)
+        layer_data(Layer("arm", fills[body.link], *body.shape.shell()), body.joint)
         for body in robot.bodies
     ]
 

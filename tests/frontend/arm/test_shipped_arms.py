@@ -61,7 +61,7 @@ def test_files_are_what_the_tables_give() -> None:
 @pytest.mark.parametrize("file", sorted(ROBOTS.glob("*.urdf")), ids=lambda file: file.stem)
 def test_pinocchio_reads_the_same(file: Path) -> None:
     """Where each link is, and what holds all of them against gravity."""
-    ours, theirs = pinocchio_model(load_urdf(file), {}), pin.buildModelFromXML(readable(file))
+    ours, theirs = pinocchio_model(load_urdf(file)), pin.buildModelFromXML(readable(file))
     assert list(ours.names[1:]) == list(theirs.names[1:])
     data, other = ours.createData(), theirs.createData()
     for q in np.random.default_rng(1).uniform(-1, 1, (5, ours.nq)):
