@@ -214,9 +214,9 @@ class Oracle:
         """The proof about the surface, made once, with what is proved by the deadline."""
         if self._proof is None:
             kept = None if self._cache is None else self._cache.get(self.surface, deadline)
-            self._proof = kept
             if kept is None or kept.kept_lower is not None:
-                self._proof = self._proved(kept, deadline)
+                kept = self._proved(kept, deadline)
+            self._proof = kept
         return self._proof
 
     def _proved(self, kept: Proof | None, deadline: Deadline) -> Proof:
