@@ -302,7 +302,7 @@ class FreeTurn(Scara):
 def test_somebodys_own_family_with_a_prismatic_joint(
     monkeypatch: pytest.MonkeyPatch, family: type, fixed: Any, field: str, said: str
 ) -> None:
-    monkeypatch.setattr(KINEMATICS, "find", lambda _: family)
+    monkeypatch.setattr(KINEMATICS, "find", lambda *_: family)
     error = refused(COBRA, robot={"fixed_joints": fixed}, **FREED)
     assert error.field == field and re.search(said, error.message)
 
