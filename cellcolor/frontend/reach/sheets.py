@@ -153,8 +153,8 @@ _SAME_PLACE = 1e-9  # m
 class Followed(Matching):
     """Links solutions that a continuous motion along a mesh edge joins.
 
-    What is left over at both ends, once clear pairs are matched, is followed along the edge in small
-    steps from either end, and linked if both ways agree.
+    What is left over at both ends, once clear pairs are matched, is followed along the edge in
+    small steps from either end, and linked if both ways agree.
     Solutions of different signs of the task determinant have a singularity between them: the sign
     is their name.
 
