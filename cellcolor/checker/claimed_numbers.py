@@ -56,6 +56,8 @@ def claims(
         found["status"] = solution.status
     if solution.proved_for_surface and "surface_lower_bound" in found:
         found["proved_for_surface"] = True
+    if solution.instance.of == "text":
+        found["instance.sha256"] = solution.instance.sha256
     for name in ("cutting_paths", "cutting_paths_lower_bound"):
         if value := getattr(solution, name):
             found[name] = value

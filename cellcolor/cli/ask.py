@@ -10,27 +10,41 @@ import click
 
 from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import (
+    COUNT,
     INPUT,
-    METRES,
+    LEFT_ALONE,
+    LENGTH,
     PATH,
     SHARE,
-    Count,
+    TIME_LIMIT,
+    TOLERANCE,
     Numbers,
-    Real,
-    Stops,
     cellcolor,
     json_option,
+    keywords,
     option,
     output_option,
-    ranges,
-    shared,
 )
 from cellcolor.cli.terminal import at_work, complain, print_json, say, say_lines
-from cellcolor.data.wording import MOST_PRICE
 
-_POSE = Numbers("a place is six numbers x,y,z,roll,pitch,yaw", 6)
 _SCENE = click.argument("scene", metavar="SCENE", type=INPUT)
-_UNSOLVED = "the time limit came before the scene itself was solved"
+_SEARCH = "door.asked:Search"
+_RANGE = Numbers("a range is two numbers LOW,HIGH", 2)
+_MOST_STOPS = 1000
+
+
+def stops_of(text: str) -> tuple[str, tuple[float, ...]]:
+    """A joint and where it may stand: evenly spaced positions up to the last."""
+    joint, _, spaced = text.partition("=")
+    try:
+        low, high, step = map(float, spaced.split(":"))
+        count = (high - low) / step
+    except (ValueError, ZeroDivisionError):
+        count = -1.0
+    if not joint or not 0 <= count <= _MOST_STOPS:
+        asked = f"stops are JOINT=FROM:TO:STEP, at most {_MOST_STOPS}, as in rail_joint=0:2:0.25"
+        raise click.BadParameter(f"{asked}, is {text!r}.")
+    return joint, tuple(low + step * number for number in range(int(count + 1e-9) + 1))
 
 
 def _print(file: Path, rows: Iterable[dict[str, Any]], text: object, as_json: bool) -> None:
@@ -42,18 +56,14 @@ def _print(file: Path, rows: Iterable[dict[str, Any]], text: object, as_json: bo
         print_json({"file": str(file)} | row)
 
 
-@cellcolor.command()
+@cellcolor.command(of=(_SEARCH,))
 @click.argument("source", metavar="SCENE|SURFACE|INSTANCE", type=INPUT)
 @option("--share", SHARE, "Print only the fewest lift-offs that cover this share, 0 to 1.")
-@shared("left_alone")
+@LEFT_ALONE
 @json_option("Print a JSON object for each point.")
-@shared("workers", "seed", "time_limit")
-def tradeoff(
-    source: Path,
-    share: float | None,
-    as_json: bool,
-    **search: Any,
-) -> Exit:
+@keywords(workers=COUNT, seed=int)
+@TIME_LIMIT
+def tradeoff(source: Path, share: float | None, as_json: bool, **search: Any) -> Exit:
     """Print the largest share of area that each number of lift-offs covers, with proof.
 
     The share is one of the area that can be covered and is not left alone.
@@ -62,8 +72,8 @@ def tradeoff(
     from cellcolor.cli.tables import nothing_to_cover
     from cellcolor.door.asking import tradeoff as front_of
 
-    with at_work(source, "asking", "the time limit came before any division was found") as tell:
-        subject = read_subject(source, search["time_limit"])
+    subject = read_subject(source, search["time_limit"])
+    with at_work(source, "asking") as tell:
         front = front_of(subject, progress=tell, **search)
         if not front.points:
             complain(f"{source}: {nothing_to_cover(front.instance)}")
@@ -73,10 +83,11 @@ def tradeoff(
     return Exit.done_if(all(row.proved for row in rows))
 
 
-@cellcolor.command()
+@cellcolor.command(of=(_SEARCH,))
 @_SCENE
 @json_option("Print a JSON object for each row.")
-@shared("workers", "seed", "time_limit")
+@keywords(workers=COUNT, seed=int)
+@TIME_LIMIT
 def explain(scene: Path, as_json: bool, **search: Any) -> Exit:
     """Print what costs a lift-off: the minimum without each limit, obstacle and test.
 
@@ -85,51 +96,18 @@ def explain(scene: Path, as_json: bool, **search: Any) -> Exit:
     """
     from cellcolor.door.asking import explain as explanation_of
 
-    with at_work(scene, "explaining", _UNSOLVED) as tell:
+    with at_work(scene, "explaining") as tell:
         found = explanation_of(scene, progress=tell, **search)
     _print(scene, (row.to_document() for row in found), found, as_json)
     return Exit.done_if(found.complete and all(row.proved_for_surface for row in found))
 
 
-@cellcolor.command()
+@cellcolor.command(of=("door.asking:place", "questions.placements:PlacementQuestion"))
 @_SCENE
-@ranges
-@option(
-    "--cover",
-    SHARE,
-    "The share of the surface that has to be covered, 0 to 1.  [default: as much as where the "
-    "part stands]",
-)
-@option(
-    "--points",
-    Count(1, 10**6),
-    "Placements tried all over the ranges; about 3/4 as many follow around the best.",
-    default=128,
-)
-@option(
-    "--best",
-    Count(1, 100),
-    "Placements that are proved on the scene's own mesh and printed.",
-    default=3,
-)
-@option(
-    "--vertices",
-    Count(20, 10**6),
-    "Of the coarse mesh that placements are tried on.",
-    default=300,
-)
-@shared("tolerance")
-@click.option(
-    "--base",
-    is_flag=True,
-    help="Move the arm's base instead of the part; it stands in the origin of the scene.",
-)
-@option(
-    "--leeway",
-    METRES,
-    "Tell how far the best placements may be off before their lift-offs rise, tried up to so many "
-    "metres.",
-)
+@keywords(x=_RANGE, y=_RANGE, z=_RANGE, roll=_RANGE, pitch=_RANGE, yaw=_RANGE)
+@keywords(cover=SHARE, points=COUNT, best=COUNT, vertices=COUNT)
+@TOLERANCE
+@keywords(base=bool, leeway=LENGTH)
 @option(
     "--map",
     PATH,
@@ -138,7 +116,8 @@ def explain(scene: Path, as_json: bool, **search: Any) -> Exit:
     metavar="OUT.(png|svg)",
 )
 @json_option("Print a JSON object for each placement.")
-@shared("jobs", "seed", "time_limit")
+@keywords(jobs=COUNT, seed=int)
+@TIME_LIMIT
 def place(
     scene: Path, tolerance: str | None, picture: Path | None, as_json: bool, **search: Any
 ) -> Exit:
@@ -154,7 +133,7 @@ def place(
 
     if picture is not None:
         check_output(picture, kind_of_picture(picture, flat=True), [scene])
-    with at_work(scene, "placing", _UNSOLVED) as tell:
+    with at_work(scene, "placing") as tell:
         found = placements_of(with_tolerance(scene, tolerance), progress=tell, **search)
         if picture is not None:
             save_map(found, picture)
@@ -164,11 +143,11 @@ def place(
     return Exit.done_if(found.complete and proved)
 
 
-@cellcolor.command()
+@cellcolor.command(of=("door.setting_up:setups", _SEARCH))
 @_SCENE
 @option(
     "--at",
-    _POSE,
+    Numbers("a place is six numbers x,y,z,roll,pitch,yaw", 6),
     "Where else the part may stand, m and rad. May be given several times.",
     metavar="X,Y,Z,ROLL,PITCH,YAW",
     multiple=True,
@@ -183,28 +162,18 @@ def place(
 )
 @option(
     "--stops",
-    Stops(),
+    stops_of,
     "Where a joint that carries the arm, such as a rail, may stand while the tool works: m or rad. "
     "May be given once for each such joint.",
     metavar="JOINT=FROM:TO:STEP",
     multiple=True,
 )
-@option(
-    "--cover",
-    SHARE,
-    "The share to be covered of what any of these set-ups reaches, 0 to 1.",
-    default=1.0,
-)
-@option(
-    "--change-over",
-    Real("PRICE", 1, MOST_PRICE),
-    "What a change from one set-up to the next costs, in lift-offs.  [default: as few set-ups as "
-    "possible, then as few lift-offs]",
-)
+@keywords(cover=SHARE, change_over=float)
 @output_option("OUT.(html|png|svg)", "A picture of the part.")
 @option("--plan", PATH, "Plan a motion for each, and judge it.", to="folder", metavar="FOLDER")
 @json_option("Print one JSON object.")
-@shared("workers", "seed", "time_limit")
+@keywords(workers=COUNT, seed=int)
+@TIME_LIMIT
 def setups(
     scene: Path,
     at: tuple[tuple[float, ...], ...],
@@ -227,15 +196,14 @@ def setups(
         check_output(output, kind_of_picture(output), [scene])
     if folder is not None:
         is_folder_or_nothing(folder)
-    with at_work(scene, "setting up", "the time limit came before there was a choice") as tell:
+    with at_work(scene, "setting up") as tell:
         found = set_ups_of(scene, at=at, stops=dict(stops) or None, progress=tell, **search)
     _print(scene, [found.answer.to_document()], found, as_json)
     if output is not None:
         found.plot(output)
     valid = whole = True
     if folder is not None:
-        late = "the time limit came before all motions were planned"
-        with at_work(scene, "planning", late) as tell:
+        with at_work(scene, "planning") as tell:
             planned = found.plan(time_limit=search["time_limit"], progress=tell)
         for one, plan in zip(found.answer.set_ups, planned, strict=True):
             own = folder / f"set-up-{one.number}"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import shlex
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext
 from fnmatch import fnmatchcase
 from functools import partial
 from pathlib import Path
@@ -14,27 +13,17 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from cellcolor.cli.ending import Exit
-from cellcolor.cli.options import (
-    PATH,
-    SECONDS,
-    Commands,
-    Count,
-    cellcolor,
-    option,
-    output_option,
-    shared,
-)
-from cellcolor.cli.terminal import complain, progress_bar, say, say_lines, shown
+from cellcolor.cli.options import COUNT, PATH, Commands, Real, cellcolor, option, output_option
+from cellcolor.cli.terminal import complain, line_of, say, say_lines
 from cellcolor.data.wording import count
 from cellcolor.errors import CellcolorError, InputError, SolverMissing
 from cellcolor.solvers.registry import DEFAULT, PAPERS, REFERENCE
 
 if TYPE_CHECKING:
     from cellcolor.lab.runs.sweep import Contestant, Specimen
-    from cellcolor.lab.runs.table import Row, TableFile
 
 
-def _numbers(_context: click.Context, _option: click.Parameter, value: str) -> tuple[int, ...]:
+def _numbers(value: str) -> tuple[int, ...]:
     """Numbers and ranges of them, such as ``0-9`` or ``3,7,10-12``."""
     found: list[int] = []
     for part in value.split(","):
@@ -55,81 +44,42 @@ def bench() -> None:
     """Experiments: solvers compared, on families of instances and on files."""
 
 
-@bench.command()
+@bench.command(of=("door.solving:solve",))
 @click.argument("subjects", metavar="FAMILY|FILE…", nargs=-1, required=True)
 @option(
     "--solver",
-    None,
+    str,
     "Solver; repeat the option for several.",
     to="solvers",
     default=(PAPERS, REFERENCE, DEFAULT),
+    show_default=True,
     metavar="NAME[@WORKERS]",
     multiple=True,
 )
-@option("--seeds", None, "Of families.", default="0-9", metavar="N-M", callback=_numbers)
+@option("--seeds", _numbers, "Of families.  [default: 0-9]", default="0-9", metavar="N-M")
 @option(
     "--time-limit",
-    SECONDS,
-    "Seconds for each solve; several are tried in turn.",
+    Real(0, 1e6, min_open=True),
+    "Seconds for each solve; several are tried in turn.  [default: 10]",
     to="limits",
     default=(10.0,),
     multiple=True,
 )
-@option(
-    "--repetitions",
-    Count(1),
-    "Repetitions of each run, with other random numbers in the solver.",
-    default=1,
-)
-@shared("search_space")
+@option("--repetitions", COUNT, "Of each run, with other random numbers in the solver.", default=1)
+@option("--search-space", click.Choice(["paper", "surface"]), default="paper")
 @option(
     "--memory",
-    Count(1),
-    "Memory for each run; a run that needs more is killed.",
+    COUNT,
+    "For each run, MB; a run that needs more is killed.",
     to="megabytes",
     default=4096,
-    metavar="MB",
+    show_default=True,
 )
-@shared("jobs")
+@option("--jobs", COUNT, "Number of processes at a time.", default=1)
 @output_option(
     "TABLE.csv", "A row for each run. An existing table is continued: its runs are not repeated."
 )
-def run(**given: Any) -> Exit:
-    """Run solvers on instances, each solve in a process of its own.
-
-    FAMILY is a set of random families (small, medium, large, growing), the library of shipped
-    graphs (library) or one family, such as medium/thin; * stands for anything. Solvers that are
-    not installed are left out. Exit code 1 if two runs contradict each other.
-    """
-    return _run_solvers(**given)
-
-
-@bench.command()
-@_TABLES
-def summary(tables: tuple[Path, ...]) -> Exit:
-    """Sum tables up as Markdown; exit code 1 if two runs contradict each other."""
-    from cellcolor.lab.runs.summary import summary_of_runs
-    from cellcolor.lab.runs.table import disagreements
-
-    rows = _read(tables)
-    if not rows:
-        raise InputError(str(tables[0]), None, "has no rows")
-    say_lines("\n".join(summary_of_runs(rows)))
-    return Exit.INVALID if disagreements(rows) else Exit.DONE
-
-
-def _read(tables: Sequence[Path]) -> list[Row]:
-    """The rows of all tables."""
-    from cellcolor.lab.runs.table import read_table
-
-    return [row for path in tables for row in read_table(path)]
-
-
-_LIBRARY = "library"
-"""Stands before the families of the library's graphs (docs/library.md)."""
-
-
-def _run_solvers(
+def run(
     subjects: Sequence[str],
     solvers: Sequence[str],
     seeds: Sequence[int],
@@ -137,23 +87,20 @@ def _run_solvers(
     output: Path | None,
     **wanted: Any,
 ) -> Exit:
-    """Make the runs, keep each of them at once, and print what came of them.
+    """Run solvers on instances, each solve in a process of its own.
 
-    Args:
-        wanted: what else :class:`~cellcolor.lab.runs.sweep.Sweep` has of the options.
+    FAMILY is a set of random families (small, medium, large, growing), the library of shipped
+    graphs (library) or one family, such as medium/thin; * stands for anything. Solvers that are
+    not installed are left out. Exit code 1 if two runs contradict each other.
     """
     from cellcolor.lab.runs.summary import summary_of_runs
     from cellcolor.lab.runs.sweep import Sweep, taking_turns
-    from cellcolor.lab.runs.table import TableFile, disagreements
-    from cellcolor.lab.workers import Workers
+    from cellcolor.lab.runs.table import continued, disagreements
 
-    specimens = list(taking_turns([list(_subjects(text, seeds)) for text in subjects]))
+    groups = [list(taking_turns(_groups(text, seeds))) for text in subjects]
     contestants = list(_contestants(solvers))
     if not contestants:
         return Exit.BAD_INPUT
-    table: AbstractContextManager[TableFile | None] = (
-        nullcontext() if output is None else TableFile(output)
-    )
     bad: list[Specimen] = []
     interrupted = False
 
@@ -162,29 +109,26 @@ def _run_solvers(
         complain(error if named else f"{subject.name}: {error}")
         bad.append(subject)
 
-    with table as file:
-        before = list(file.rows) if file else []
+    with continued(output) as table:
+        before = len(table.rows)
         sweep = Sweep(
-            specimens,
+            list(taking_turns(groups)),
             contestants,
             command=shlex.join(["cellcolor", *sys.argv[1:]]),
-            done={row.key for row in before},
+            done={row.key for row in table.rows},
             complain=tell,
             **wanted,
         )
-        made: list[Row] = []
-        total = len(specimens) * sweep.runs_of_each
         try:
-            with Workers(jobs) as workers, progress_bar(total) as advance:
-                for row in sweep.run(workers):
-                    made.append(row)
-                    if file is not None:
-                        file.append(row)
-                    advance(len(made) + sweep.skipped, f"{shown(row.subject)}: {row.contestant}")
+            with line_of(Path("bench"), "solving") as show:
+                for row in sweep.run(jobs):
+                    table.append(row)
+                    done = len(table.rows) - before + sweep.skipped
+                    show(f"{done} of {sweep.runs}, {row.subject}: {row.contestant}")
         except KeyboardInterrupt:
             interrupted = True
             complain("interrupted")
-    wrong = disagreements([*before, *made])
+    made, wrong = table.rows[before:], disagreements(table.rows)
     if made:
         say_lines("\n".join(summary_of_runs(made)))
     already = f", {sweep.skipped} left out or already there" if sweep.skipped else ""
@@ -200,45 +144,42 @@ def _run_solvers(
     return Exit.STOPPED if interrupted else Exit.DONE
 
 
-def _subjects(text: str, seeds: Sequence[int]) -> Iterator[Specimen]:
-    """What an argument stands for: families, the library, shipped files by a pattern, a file."""
+@bench.command()
+@_TABLES
+def summary(tables: tuple[Path, ...]) -> Exit:
+    """Sum tables up as Markdown; exit code 1 if two runs contradict each other."""
+    from cellcolor.lab.runs.summary import summary_of_runs
+    from cellcolor.lab.runs.table import disagreements, read_table
+
+    rows = [row for path in tables for row in read_table(path)]
+    if not rows:
+        raise InputError(str(tables[0]), None, "has no rows")
+    say_lines("\n".join(summary_of_runs(rows)))
+    return Exit.INVALID if disagreements(rows) else Exit.DONE
+
+
+def _groups(text: str, seeds: Sequence[int]) -> list[list[Specimen]]:
+    """What an argument stands for: random families, those of the library, or a file."""
     from cellcolor.cli.inputs import read_instance
     from cellcolor.door.installed import find_file, library
-    from cellcolor.lab.runs.sweep import Specimen, families_like, of_family, taking_turns
+    from cellcolor.lab.runs.sweep import Specimen, families
 
-    families = families_like(text)
-    if families:
-        yield from taking_turns([of_family(name, seeds) for name in families])
-        return
-    if text.partition("/")[0] == _LIBRARY and not Path(text).exists():
-        yield from taking_turns(_shipped_families(text))
-        return
-    patterned = any(letter in text for letter in "*?[") and not Path(text).exists()
-    names = [name for name in library() if fnmatchcase(name, text)] if patterned else [text]
-    if not names:
-        raise InputError(None, None, f"{text}: matches no family and no shipped name")
-    for name in names:
-        file = find_file(name)
-        family = file.resolve().parent.name
-        yield Specimen(family, None, str(file), partial(read_instance, file))
-
-
-def _shipped_families(pattern: str) -> list[list[Specimen]]:
-    """The graphs of the library whose family, as ``library/family``, is like a pattern."""
-    from cellcolor.cli.inputs import read_instance
-    from cellcolor.door.installed import find_file, library
-    from cellcolor.lab.runs.sweep import Specimen
-
-    wanted = f"{_LIBRARY}/*" if pattern == _LIBRARY else pattern
-    families: dict[str, list[Specimen]] = {}
+    if found := families(text, seeds):
+        return found
+    if text.partition("/")[0] != "library" or Path(text).exists():
+        file = find_file(text)
+        make = partial(read_instance, file)
+        return [[Specimen(file.resolve().parent.name, None, str(file), make)]]
+    wanted = "library/*" if text == "library" else text
+    shipped: dict[str, list[Specimen]] = {}
     for entry in library().index.entries:
-        family = f"{_LIBRARY}/{entry.family}"
+        family = f"library/{entry.family}"
         if entry.file is not None and fnmatchcase(family, wanted):
             make = partial(read_instance, find_file(entry.name))
-            families.setdefault(family, []).append(Specimen(family, None, entry.name, make))
-    if not families:
-        raise InputError(None, None, f"{pattern}: matches no family of the library")
-    return list(families.values())
+            shipped.setdefault(family, []).append(Specimen(family, None, entry.name, make))
+    if not shipped:
+        raise InputError(None, None, f"{text}: matches no family of the library")
+    return list(shipped.values())
 
 
 def _contestants(names: Sequence[str]) -> Iterator[Contestant]:

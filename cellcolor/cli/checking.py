@@ -6,14 +6,14 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from cellcolor.checker.certificates import BoundVerdict
 from cellcolor.checker.claimed_numbers import claims
 from cellcolor.checker.division import check_scheme
 from cellcolor.cli.ending import Exit
 from cellcolor.cli.inputs import STANDARD_INPUT, input_file, name_of, read_subject
-from cellcolor.cli.terminal import complain, print_json, say, stages_of
+from cellcolor.cli.terminal import at_work, complain, print_json, say
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import SchemeKey, Solution, read_schemes, scheme_key
 from cellcolor.data.trajectory import Trajectory
@@ -29,7 +29,7 @@ from cellcolor.data.verdicts import (
 from cellcolor.data.wording import count, lift_offs_of, segments_and_lift_offs
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.installed import find_claim, find_file
-from cellcolor.door.reading import format_of_claim, read_trajectory
+from cellcolor.door.reading import format_of_claim, read_claim
 from cellcolor.door.subject import Subject
 from cellcolor.errors import CellcolorError, InputError, naming
 from cellcolor.files.writing import is_folder_or_nothing
@@ -227,9 +227,9 @@ def _check_plan(request: Request, claim: Path) -> Exit:
     if request.cache is not None:
         is_folder_or_nothing(request.cache)
 
-    from cellcolor.door.oracle import KeepingOracle
+    from cellcolor.door.oracle import Oracle
 
-    oracle = KeepingOracle(subject, request.seconds, request.cache)
+    oracle = Oracle(subject, time_limit=request.seconds, cache=request.cache)
     found = oracle.judge(claim, deadline=request.deadline)
     code = _told(request, found, _described(request.claim, found).to_document(), say_plan)
     if code is Exit.INVALID or not request.require_optimal or found.optimal:
@@ -268,10 +268,11 @@ def _described(name: str, verdict: Verdict) -> PlanVerdict:
 def _check_trajectory(request: Request, claim: Path) -> Exit:
     from cellcolor.door.judging import judge_trajectory
 
-    given = read_trajectory(claim)
-    with naming(name_of(request.claim)):
+    given = read_claim(claim, (Trajectory,))
+    name = name_of(request.claim)
+    with naming(name):
         subject = request.opened(request.deadline)
-        with stages_of(Path(request.claim), "judging") as report:
+        with at_work(Path(name), "judging") as report:
             verdict = judge_trajectory(subject, given, request.deadline, report)
     document = {"file": request.claim} | verdict.to_document()
     return _told(request, verdict, document, say_trajectory)
@@ -292,13 +293,7 @@ def _no_verdict(request: Request, why: InputError, code: Exit) -> Exit:
     """Say why there is no verdict: on standard error, and as JSON where that was asked for."""
     complain(why)
     if request.as_json:
-        error = CheckError(
-            file=request.claim,
-            valid=None,
-            error=str(why),
-            at_file=why.file,
-            at_field=why.field,
-            exit_code=3 if code is Exit.STOPPED else 2,
-        )
+        number: Literal[2, 3] = 3 if code is Exit.STOPPED else 2
+        error = CheckError(request.claim, None, str(why), why.file, why.field, number)
         print_json(error.to_document())
     return code

@@ -6,21 +6,17 @@ Python's own way, with a traceback or none.
 
 from __future__ import annotations
 
-import signal
 import sys
-import threading
 from contextlib import contextmanager
 from enum import IntEnum
 
-from cellcolor.signals import SIGNALS, handled_by
+from cellcolor.signals import handled_by
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from types import FrameType
     from typing import Any
-
-    from cellcolor.signals import Handler
 
 
 class Exit(IntEnum):
@@ -62,13 +58,8 @@ class Interrupts:
         self.seen = False
 
     @contextmanager
-    def end_the_command(self, *, last: bool) -> Iterator[None]:
-        """Turn signals into :class:`Stopped`, and forget those of earlier commands.
-
-        Args:
-            last: the process ends with this command: the former handlers, which would answer a
-                late signal with a traceback, do not come back.
-        """
+    def end_the_command(self) -> Iterator[None]:
+        """Turn signals into :class:`Stopped`, and forget those of earlier commands."""
 
         def handle(_number: int, _frame: FrameType | None) -> None:
             self.seen = True
@@ -84,20 +75,10 @@ class Interrupts:
 
         sys.unraisablehook = quiet
         try:
-            if last:
-                self.handle_with(handle)
+            with handled_by(handle):
                 yield
-            else:
-                with handled_by(handle):
-                    yield
         finally:
             sys.unraisablehook = report
-
-    def handle_with(self, handler: Handler | signal.Handlers) -> None:
-        """Replace the signals' handlers for good."""
-        if threading.current_thread() is threading.main_thread():
-            for number in SIGNALS:
-                signal.signal(number, handler)
 
     def check(self) -> None:
         """Raise what a library has swallowed: some catch everything, when imported above all.

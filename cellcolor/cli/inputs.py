@@ -12,12 +12,10 @@ from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cellcolor.cli.ending import INTERRUPTS
-from cellcolor.cli.terminal import complain, stages_of
+from cellcolor.cli.terminal import at_work, complain
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.door.installed import extras_for
-from cellcolor.door.subject import Subject, open_subject, scene_or_file
+from cellcolor.door.subject import Subject, open_subject, scene_of
 from cellcolor.errors import InputError, system_errors
 
 if TYPE_CHECKING:
@@ -36,8 +34,6 @@ _UNITS = {
 def open_file(path: Path, deadline: Deadline = NEVER, tolerance: str | None = None) -> Subject:
     """Read what is in a file, and build a scene.
 
-    Libraries that catch everything can swallow a signal; it is raised before and after a build.
-
     Args:
         deadline: when a build has to end.
         tolerance: of a scene's part, see :func:`with_tolerance`.
@@ -46,10 +42,8 @@ def open_file(path: Path, deadline: Deadline = NEVER, tolerance: str | None = No
         InputError: with the file named.
         OutOfTime: the deadline came before there was a surface.
     """
-    INTERRUPTS.check()
-    with stages_of(path, "building") as report_stage:
-        subject = open_subject(with_tolerance(path, tolerance), deadline, report_stage)
-    INTERRUPTS.check()
+    with at_work(path, "building") as tell:
+        subject = open_subject(with_tolerance(path, tolerance), deadline, tell)
     return replace(subject, path=path)
 
 
@@ -77,12 +71,8 @@ def with_tolerance(path: Path, text: str | None) -> Path | Scene:
                 f"must be a length, an angle, or both, with units, such as 2mm,0.5deg, is {text!r}"
             )
             raise InputError(None, "--tolerance", message) from error
-    with extras_for("the front end"):
-        from cellcolor.frontend.scene import Scene as SceneValue
-
-    scene = scene_or_file(path)
-    assert isinstance(scene, Path)
-    return SceneValue.read(scene).varied(tolerance=tolerance, file=scene)
+    scene = scene_of(path)
+    return scene.varied(tolerance=tolerance, file=scene.file)
 
 
 def read_subject(path: Path, deadline: Deadline = NEVER, tolerance: str | None = None) -> Subject:

@@ -9,20 +9,21 @@ from typing import Any
 
 import click
 
-from cellcolor.cli.ending import INTERRUPTS, Exit
+from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import (
+    COUNT,
     INPUT,
+    LEFT_ALONE,
     PATH,
-    SECONDS,
-    Count,
+    SHARE,
+    TOLERANCE,
     cellcolor,
     json_option,
-    one_of,
+    keywords,
     option,
     output_option,
-    shared,
 )
-from cellcolor.cli.terminal import apart_from, complain, say, say_lines
+from cellcolor.cli.terminal import at_work, complain, say, say_lines
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.writing import (
@@ -34,7 +35,7 @@ from cellcolor.files.writing import (
     write,
 )
 from cellcolor.pictures.registry import PICTURES
-from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, PAPERS, REFERENCE, solver_names
+from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, PAPERS, REFERENCE
 
 _SCHEMES = 1000  # that are listed unless --limit says otherwise
 
@@ -64,84 +65,66 @@ def build(source: Path, output: Path) -> Exit:
     if is_scene(source) and not alone:
         check_output(surface_path, kind_of_format(LabelledSurface.FORMAT), [source])
         check_output(side_path, SIDE_FILE, [source])
-    with apart_from(output):
-        subject = open_file(source)
-        if subject.given_instance is not None:
-            raise InputError(str(source), "format", "is an instance already")
-        beside: list[Output] = []
-        instance = subject.graph()
-        reference = os.path.relpath(source.resolve(), output.parent.resolve())
-        if (built := subject.built) is not None:
-            side = {"side_file": side_path.name}
-            surface = replace(built.surface, meta=built.surface.meta | side)
-            instance, reference = replace(instance, meta=surface.meta), surface_path.name
-            beside = [Output(side_path, SIDE_FILE, [built.candidates.to_bytes()])]
-            beside += [Output.of(surface_path, surface)]
-        named = None
-        if instance.surface is not None and not alone:
-            named = replace(instance.surface, path=PurePath(reference).as_posix())
-        instance, beside = replace(instance, surface=named), [] if alone else beside
-        # The instance last: it carries the fingerprint of its surface.
-        write([*beside, Output.of(output, instance)], [source])
-        if built is not None:
-            say_lines(built.report)
-        for file in beside:
-            say(f"wrote {file.path}")
-        say(f"wrote {output}: {instance.size}")
+    subject = open_file(source)
+    if subject.given_instance is not None:
+        raise InputError(str(source), "format", "is an instance already")
+    beside: list[Output] = []
+    instance = subject.graph()
+    reference = os.path.relpath(source.resolve(), output.parent.resolve())
+    if (built := subject.built) is not None:
+        side = {"side_file": side_path.name}
+        surface = replace(built.surface, meta=built.surface.meta | side)
+        instance, reference = replace(instance, meta=surface.meta), surface_path.name
+        beside = [Output(side_path, SIDE_FILE, [built.candidates.to_bytes()])]
+        beside += [Output.of(surface_path, surface)]
+    named = None
+    if instance.surface is not None and not alone:
+        named = replace(instance.surface, path=PurePath(reference).as_posix())
+    instance, beside = replace(instance, surface=named), [] if alone else beside
+    # The instance last: it carries the fingerprint of its surface.
+    write([*beside, Output.of(output, instance)], [source])
+    if built is not None:
+        say_lines(built.report)
+    for file in beside:
+        say(f"wrote {file.path}")
+    say(f"wrote {output}: {instance.size}")
     if instance.nothing_to_cover:
         complain(f"{source}: {nothing_to_cover(instance)}")
         return Exit.STOPPED
     return Exit.DONE
 
 
-@cellcolor.command()
+@cellcolor.command(of=("door.solving:solve", "door.asked:SearchOfAPart", "door.asked:Search"))
 @click.argument("files", metavar="FILE…", nargs=-1, required=True, type=INPUT)
 @output_option("OUT", "A file for one input, a folder for several.")
 @option(
     "--solver",
-    None,
+    str,
     f"{', '.join(OWN_NAMES)}, or what another package registers. {PAPERS} is the paper's "
     f"depth-first search, for small instances, and {REFERENCE} the same search with a bound.",
     default=DEFAULT,
-    metavar="NAME",
-    callback=one_of(solver_names),
+    show_default=True,
 )
-@shared("search_space")
-@option(
-    "--strands",
-    Count(1),
-    "Corridors that may cross an edge, in search space surface.  [default: 2]",
-    metavar="K",
-)
-@shared("cover", "left_alone", "tolerance")
-@click.option("--all", "every", is_flag=True, help="List all optimal schemes.")
-@option("--limit", Count(1), "With --all, stop after this many schemes.  [default: 1000]")
-@option("--time-limit", SECONDS, "Seconds for each file.")
-@shared("workers", "seed")
+@keywords(search_space=click.Choice(["paper", "surface"]), strands=COUNT, cover=SHARE)
+@LEFT_ALONE
+@TOLERANCE
+@option("--all", bool, "List all optimal schemes.", to="every")
+@option("--limit", COUNT, "With --all, stop after this many schemes.  [default: 1000]")
+@option("--time-limit", float, "Seconds for each file.", to="seconds")
+@keywords(workers=COUNT, seed=int)
 @json_option("Print JSON Lines, one solution per file.")
 def solve(files: tuple[Path, ...], every: bool, limit: int | None, **given: Any) -> Exit:
     """Find the fewest segments of instances, labelled surfaces and scenes.
 
     FILE may be the name of a shipped one, such as wok: a file of that name goes first. That holds
-    for the other commands as well; cellcolor.library() lists the names in Python.
+    for the other commands as well; the command library lists the names.
     """
-    first = Deadline.after(given["time_limit"])
-    space = given["search_space"]
-    wrong = {
-        "--strands needs --search-space surface": given["strands"] and space == "paper",
-        "--limit needs --all": limit is not None and not every,
-        "--all needs --search-space paper: schemes are defined only there": (
-            every and space == "surface"
-        ),
-    }
-    for message, is_wrong in wrong.items():
-        if is_wrong:
-            raise click.UsageError(message)
+    first = Deadline.of(given["seconds"])
+    if limit is not None and not every:
+        raise click.UsageError("--limit needs --all")
 
     from cellcolor.cli.solving import solve_files
-    from cellcolor.solvers.interface import STRANDS
 
-    given["strands"] = given["strands"] or STRANDS[space]
     return solve_files(files, schemes=(limit or _SCHEMES) if every else None, first=first, **given)
 
 
@@ -150,13 +133,15 @@ def solve(files: tuple[Path, ...], every: bool, limit: int | None, **given: Any)
 @click.argument("claim", metavar="SOLUTION.json|PLAN.json|TRAJECTORY", type=click.Path())
 @option(
     "--time-limit",
-    SECONDS,
+    float,
     "Seconds, including reading, for a trajectory, or for the proven range that a plan is compared "
     "with.",
     to="seconds",
     default=60.0,
+    show_default=True,
 )
-@shared("left_alone", "tolerance")
+@LEFT_ALONE
+@TOLERANCE
 @option(
     "--cache",
     PATH,
@@ -164,10 +149,8 @@ def solve(files: tuple[Path, ...], every: bool, limit: int | None, **given: Any)
     "proof.",
     metavar="FOLDER",
 )
-@click.option(
-    "--require-optimal",
-    is_flag=True,
-    help="For a plan: exit code 1 if it can be beaten, 3 if that is open.",
+@option(
+    "--require-optimal", bool, "For a plan: exit code 1 if it can be beaten, 3 if that is open."
 )
 @json_option("One JSON object.")
 def check(seconds: float, **given: Any) -> Exit:
@@ -177,7 +160,7 @@ def check(seconds: float, **given: Any) -> Exit:
     surface, for a trajectory (.json or .csv) it is the scene. One of the two may be -, for standard
     input.
     """
-    deadline = Deadline.after(seconds)
+    deadline = Deadline.of(seconds)
     if given["subject"] == given["claim"] == "-":
         raise click.UsageError("only one of the two can be standard input (-)")
 
@@ -186,44 +169,28 @@ def check(seconds: float, **given: Any) -> Exit:
     return check_files(Request(seconds=seconds, deadline=deadline, **given))
 
 
-@cellcolor.command()
+@cellcolor.command(of=("door.drawing:show",))
 @click.argument("file", metavar="FILE", type=INPUT)
 @click.argument("claim", metavar="[SOLUTION.json|PLAN.json]", required=False, type=INPUT)
 @output_option("OUT.(html|png|svg)", "The picture; the ending gives its format.", required=True)
-@option(
-    "--view",
-    click.Choice(list(PICTURES)),
-    f"The picture: {', '.join(PICTURES)}. The options below and a second file choose one as well.",
-    metavar="NAME",
-)
-@option("--color", None, "Show where one color is available.", metavar="NAME|ID")
-@option("--vertex", Count(0), "Show the arm at a vertex, in a --branch.")
-@option("--branch", None, "An inverse-kinematic branch.", metavar="NAME|ID")
-def show(file: Path, claim: Path | None, output: Path, view: str | None, **of: Any) -> Exit:
+@keywords(view=click.Choice(list(PICTURES)), color=str, vertex=int, branch=str)
+def show(file: Path, claim: Path | None, output: Path, **of: Any) -> Exit:
     """Draw an instance, a labelled surface or a scene, by cell unless an option says otherwise.
 
     With a solution after what was solved, or a plan on its surface: by segment.
     """
     from cellcolor.cli.inputs import open_file
     from cellcolor.data.plan import Plan
-    from cellcolor.door.drawing import draw, kind_of_picture, picture_of
-    from cellcolor.door.installed import extras_for
+    from cellcolor.door.drawing import kind_of_picture
+    from cellcolor.door.drawing import show as drawing_of
     from cellcolor.door.reading import format_of_claim
 
-    inputs = [file, *filter(None, [claim])]
-    kind = kind_of_picture(output)
-    check_output(output, kind, inputs)
-    of["plan" if claim and format_of_claim(claim) == Plan.FORMAT else "solution"] = claim
-    with extras_for(file):
-        try:
-            picture = picture_of(view, "cells", of)
-        except InputError as error:  # what is wrong is an option, not a file
-            raise click.UsageError(str(error)) from error
+    check_output(output, kind_of_picture(output), [file, *filter(None, [claim])])
+    if claim is not None:
+        of["plan" if format_of_claim(claim) == Plan.FORMAT else "solution"] = claim
     subject = open_file(file)
-    with extras_for(output):
-        drawing = draw(picture, subject, of)
-        content = drawing.render(output.suffix)
-    INTERRUPTS.check()
-    write([Output(output, kind, [content])], inputs)
+    with at_work(file, "drawing"):
+        drawing = drawing_of(subject, **of)
+    drawing.save(output)
     say(f"wrote {output}: {drawing}")
     return Exit.DONE

@@ -9,25 +9,27 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cellcolor.cli.ending import INTERRUPTS, Exit
+from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import (
     INPUT,
-    METRES,
+    LEFT_ALONE,
+    LENGTH,
     PATH,
+    SHARE,
+    TIME_LIMIT,
+    TOLERANCE,
+    Numbers,
     Real,
     cellcolor,
-    motion_options,
-    one_of,
+    keywords,
     option,
     output_option,
-    shared,
 )
-from cellcolor.cli.terminal import at_work, complain, say, say_lines, stages_of
+from cellcolor.cli.terminal import at_work, complain, say, say_lines
 from cellcolor.data.wording import count, listed, segments_and_lift_offs
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError, naming
 from cellcolor.files.writing import Output, check_output, is_stream, kind_of_format, write
-from cellcolor.tool_paths.registry import DEFAULT_PATTERN, PATTERNS, pattern_names
 
 if TYPE_CHECKING:
     from cellcolor.door.planned import UnfinishedPlan
@@ -35,18 +37,11 @@ if TYPE_CHECKING:
 
 _ENDING = ".surface.json"
 _FAULTS = 5  # that plan prints
-_PATTERN = option(
-    "--pattern",
-    None,
-    f"Pattern of the tool paths: {', '.join(PATTERNS)}, or what another package registers. Rows of "
-    "back-and-forth run back-and-forth:X,Y,Z along a vector, back-and-forth:around:X,Y,Z around an "
-    "axis, or back-and-forth:fewest-turns.",
-    default=DEFAULT_PATTERN,
-    metavar="NAME",
-    callback=lambda context, option, value: (
-        one_of(pattern_names)(context, option, value.partition(":")[0]) and value
-    ),
+_SAID = (
+    *("frontend.setup:Motion", "door.planning:plan"),
+    *("door.asked:SearchOfAPart", "door.painting:cover"),
 )
+_JOINTS = Numbers("must be numbers N,N,…")
 
 
 @cellcolor.command()
@@ -57,16 +52,8 @@ _PATTERN = option(
     "The painted surface; its plan is written beside it as OUT.plan.json.",
     required=True,
 )
-@option(
-    "--tool-radius",
-    METRES,
-    "Of the tool's footprint, m: for a better posture a border bends about as sharply as its rim.  "
-    "[default: the scene's, or one mean mesh edge]",
-)
-@shared("time_limit")
-def paint(
-    source: Path, claim: Path, output: Path, tool_radius: float | None, time_limit: Deadline
-) -> Exit:
+@TIME_LIMIT
+def paint(source: Path, claim: Path, output: Path, time_limit: Deadline) -> Exit:
     """Paint every vertex of a surface in the colors of a solution.
 
     FILE is a labelled surface, a scene, or an instance that names its surface. Where a cell is
@@ -80,18 +67,12 @@ def paint(
     inputs = [source, claim]
     plan_path = check_painted(output, inputs)
     solution = Solution.read(claim)
-    try:
-        with naming(claim):
-            subject = read_subject(source, time_limit)
-            if subject.surface_path is not None:  # of an instance: what it names is read as well
-                inputs.append(subject.surface_path)
-            check_painted(output, inputs)
-            painted = painted_of(
-                subject, solution, tool_radius_m=tool_radius, time_limit=time_limit
-            )
-    except OutOfTime as error:
-        message = f"{source}: not painted: the time limit came first; nothing is written"
-        raise OutOfTime(message) from error
+    subject = read_subject(source, time_limit)
+    if subject.surface_path is not None:  # of an instance: what it names is read as well
+        inputs.append(subject.surface_path)
+    check_painted(output, inputs)
+    with at_work(source, "painting"), naming(claim):
+        painted = painted_of(subject, solution, time_limit=time_limit)
     write([Output.of(plan_path, painted.plan), Output.of(output, painted.surface)], inputs)
     added = len(painted.surface.vertices) - len(subject.surface.vertices)
     refined = f", {count(added, 'vertex', 'vertices')} added" if added else ""
@@ -103,10 +84,7 @@ def paint(
 
 
 def _about(painted: Painted) -> Iterator[str]:
-    """Borders of a painting, what a scene refused of it, and segments that are one on the mesh."""
-    if painted.borders is not None and painted.segments > 1:
-        before, after = painted.borders.before, painted.borders.after
-        yield f"borders: {after.length_m:.4g} m, {before.length_m:.4g} m as first drawn"
+    """What a scene refused of a painting, and segments that are one on the mesh."""
     if len(painted.minima) > 1:
         yield f"the scene rejects copied colors: {count(painted.minima[0], 'segment')} as solved,"
         yield f"{painted.segments} after solving again with the true colors of the refined surface"
@@ -139,14 +117,14 @@ def check_painted(output: Path, inputs: Sequence[Path]) -> Path:
     return plan_path
 
 
-@cellcolor.command()
+@cellcolor.command(of=("door.painting:cover",))
 @click.argument("source", metavar="SURFACE.json", type=INPUT)
 @click.argument("plan", metavar="PLAN.json", type=PATH)
-@_PATTERN
-@option("--spacing-m", METRES, "Desired distance between neighboring passes.", required=True)
-@option("--tool-radius-m", METRES, "Of the tool's footprint.", required=True)
+@keywords(pattern=str)
+@option("--spacing-m", LENGTH, required=True)
+@option("--tool-radius-m", LENGTH, required=True)
 @output_option("PATHS.json", "The paths.", required=True)
-@shared("time_limit")
+@TIME_LIMIT
 def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
     """Lay a tool path on every segment of a painted surface, without a robot.
 
@@ -160,14 +138,8 @@ def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
     inputs = [source, plan]
     check_output(output, kind_of_format(ToolPaths.FORMAT), inputs)
     surface, colors = LabelledSurface.read(source), Plan.read(plan)
-    try:
-        with stages_of(source, "covering") as report:
-            found = covered_of(surface, colors, progress=report, **wanted)
-    except OutOfTime as error:
-        message = f"{source}: not covered: the time limit came first; nothing is written"
-        raise OutOfTime(message) from error
-    except InputError as error:
-        raise error if error.file or error.field else error.in_file(str(plan)) from error
+    with at_work(source, "covering") as tell, naming(plan):
+        found = covered_of(surface, colors, progress=tell, **wanted)
     write([Output.of(output, found.paths)], inputs)
     say(f"wrote {output}: {found}")
     for path, measures in zip(found.paths.paths, found.measures, strict=True):
@@ -179,27 +151,26 @@ def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
     return Exit.DONE
 
 
-@cellcolor.command()
+@cellcolor.command(of=_SAID)
 @click.argument("scene", metavar="SCENE.toml", type=INPUT)
 @output_option("FOLDER", "Folder for all files; it is created if it does not exist.", required=True)
-@_PATTERN
-@shared("cover", "left_alone", "tolerance")
-@option(
-    "--ask",
-    None,
-    "What report.html is to tell besides: tradeoff, explain, place or setups. May be given several "
-    "times.",
-    metavar="QUESTION",
-    multiple=True,
-)
+@keywords(pattern=str, cover=SHARE)
+@LEFT_ALONE
+@TOLERANCE
+@option("--ask", str, metavar="QUESTION", multiple=True)
 @option(
     "--export-step",
-    Real("SECONDS", 0.001, 0.5),
-    "The fixed time step of the files for controllers, from 0.001 to 0.5 s. By default they have "
-    "the samples of the trajectory or via points, and a UR arm's program has 0.008 s.",
+    Real(0.001, 0.5),
+    "The fixed time step of the files for controllers, s. By default they have the samples of the "
+    "trajectory or via points, and a UR arm's program has 0.008 s.",
 )
-@shared("time_limit")
-@motion_options
+@TIME_LIMIT
+@keywords(tool_radius_m=float, spacing_m=float, overlap_m=float, speed_m_per_s=float)
+@keywords(lead_m=float, approach_speed_m_per_s=float, transfer_speed_m_per_s=float)
+@keywords(even_feed=bool, least_feed=float, joint_velocities_rad_per_s=_JOINTS)
+@keywords(joint_accelerations_rad_per_s2=_JOINTS, joint_jerks_rad_per_s3=_JOINTS)
+@keywords(retract_m=float, clearance_m=float)
+@keywords(home_rad=Numbers("must be numbers N,N,… or free", word="free"))
 def plan(
     scene: Path, output: Path, tolerance: str | None, export_step: float | None, **wanted: Any
 ) -> Exit:
@@ -214,15 +185,9 @@ def plan(
     from cellcolor.door.planning import plan as planned_of
 
     check_folder(output, [scene])
-    INTERRUPTS.check()
-    late = "not planned: the time limit came before the topological graph was known"
     try:
-        with at_work(scene, "planning", late) as report:
-            planned = planned_of(
-                with_tolerance(scene, tolerance),
-                progress=report,
-                **{key: value for key, value in wanted.items() if value is not None},
-            )
+        with at_work(scene, "planning") as report:
+            planned = planned_of(with_tolerance(scene, tolerance), progress=report, **wanted)
             report("files and page")
             begun = time.perf_counter()
             written = planned.save(output, export_step)
@@ -234,7 +199,6 @@ def plan(
         if isinstance(end.__cause__, PlanOutOfTime):
             return _unfinished(scene, output, end.__cause__.unfinished)
         raise
-    INTERRUPTS.check()
     warn_of(scene, planned.subject)
     say_lines(planned)
     verdict = planned.verdict

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from cellcolor.cli.ending import INTERRUPTS, Exit
+from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import (
     INPUT,
-    METRES,
+    LENGTH,
     PATH,
+    TIME_LIMIT,
     cellcolor,
     json_option,
+    keywords,
     option,
     output_option,
-    shared,
 )
-from cellcolor.cli.terminal import apart_from, at_work, print_json, say, say_lines
+from cellcolor.cli.terminal import at_work, print_json, say, say_lines
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, RefusedResult, naming
@@ -26,7 +27,6 @@ from cellcolor.files.writing import Output, check_output, kind_of_format, write
 
 if TYPE_CHECKING:
     from cellcolor.data.instance import Instance
-    from cellcolor.data.library_index import LibraryEntry
     from cellcolor.data.solution import Solution
     from cellcolor.solvers.portable import OutsideAnswer
 
@@ -62,12 +62,11 @@ def export(source: Path, output: Path, kind: str | None) -> Exit:
 
     form = PORTABLE[kind]
     check_output(output, form.kind, [source])
-    with apart_from(output):
-        instance = read_instance(source)
-        with naming(source):
-            content = form.write(instance)
-        write([Output(output, form.kind, content)], [source])
-        say(f"wrote {output}, for {form.about}")
+    instance = read_instance(source)
+    with naming(source):
+        content = form.write(instance)
+    write([Output(output, form.kind, content)], [source])
+    say(f"wrote {output}, for {form.about}")
     return Exit.DONE
 
 
@@ -96,14 +95,13 @@ def answer(source: Path, given: Path, kind: str, output: Path) -> Exit:
 
     inputs = [source, given]
     check_output(output, kind_of_format(Solution.FORMAT), inputs)
-    with apart_from(output):
-        instance = read_instance(source)
-        with naming(given):
-            solution = _checked(instance, read_answer(instance, read_text(given), kind), kind)
-        write([Output.of(output, solution)], inputs)
-        say(f"wrote {output}: {count(solution.segments or 0, 'segment')}")
-        for note in solution.notes:
-            say(note)
+    instance = read_instance(source)
+    with naming(given):
+        solution = _checked(instance, read_answer(instance, read_text(given), kind), kind)
+    write([Output.of(output, solution)], inputs)
+    say(f"wrote {output}: {count(solution.segments or 0, 'segment')}")
+    for note in solution.notes:
+        say(note)
     return Exit.DONE
 
 
@@ -131,7 +129,7 @@ def _checked(instance: Instance, found: OutsideAnswer, kind: str) -> Solution:
 @output_option("INSTANCE.json", "The instance.", required=True)
 @option(
     "--correct",
-    None,
+    str,
     "Correct cells beside an edge if the file has them wrong, -1 for the outside.",
     to="corrections",
     metavar="EDGE=A,B",
@@ -150,70 +148,41 @@ def import_(source: Path, output: Path, corrections: tuple[str, ...]) -> Exit:
     check_output(output, kind_of_format(Instance.FORMAT), [source])
     instance = read_imcgs(source, corrections, output.name.removesuffix(".json"))
     write([Output.of(output, instance)], [source])
-    with apart_from(output):
-        say(f"wrote {output}: {instance.size}")
-        for entry in library().index.entries:
-            if entry.fingerprint == instance.sha256:
-                say(f"This is {entry.name} of the library: {entry.paper} segments.")
+    say(f"wrote {output}: {instance.size}")
+    for entry in library().index.entries:
+        if entry.fingerprint == instance.sha256:
+            say(f"This is {entry.name} of the library: {entry.paper} segments.")
     return Exit.DONE
 
 
 @cellcolor.command()
-@json_option("Print JSON Lines, one entry of the index per line.")
+@json_option("Print JSON Lines, an entry of the library's index on each, with all that is known.")
 def library(as_json: bool) -> Exit:
-    """List the graphs of the instance library, with what is known of their minima.
+    """List the names that can replace a file: scenes, robots, and the graphs of the library.
 
-    Commands take them by name, and check takes the stored solution of one as NAME.solution.json.
+    Of graphs the line says what is known of the minimum in search space paper. The command check
+    takes the stored solution of a graph as NAME.solution.json.
     """
     from dataclasses import asdict
 
-    from cellcolor.cli.tables import console, table_of
     from cellcolor.door.installed import library as shipped
 
-    entries = shipped().index.entries
     if as_json:
-        for entry in entries:
+        for entry in shipped().index.entries:
             print_json(asdict(entry))
-        return Exit.DONE
-    numbers = ("cells", "darts", "loops", "colors", "holes", "paper", "any division", "verified")
-    columns = {"name": "fold", "family": "fold"} | dict.fromkeys(numbers, "right")
-    console().print(table_of(columns, map(_row, entries)))
-    console().print(
-        f"{count(len(entries), 'graph')}. darts, loops: live ones of the cell that has most; "
-        "paper, any division: where the fewest\nsegments lie; verified: the lower bound for any "
-        "division has a certificate of that kind, which needs no solver"
-    )
+    else:
+        say_lines(shipped())
     return Exit.DONE
 
 
-def _row(entry: LibraryEntry) -> list[str]:
-    numbers = (entry.cells, entry.darts, entry.loops, entry.colors, entry.holes)
-    lower = entry.surface.lower
-    return [
-        entry.name,
-        entry.family,
-        *map(str, numbers),
-        str(entry.paper),
-        str(entry.surface),
-        lower.kind if lower.verified else "",
-    ]
-
-
-@cellcolor.command()
+@cellcolor.command(of=("door.reading:label",))
 @click.argument("source", metavar="JOINTS.(npz|json|csv)", type=PATH)
 @output_option("SURFACE.json", "The labelled surface.", required=True)
-@option("--mesh", PATH, "The mesh of a CSV file, in m.", metavar="MESH.(obj|ply|stl)")
-@click.option("--cut", is_flag=True, help="Cut colors that have two solutions of a vertex.")
-@option("--reach", METRES, "The arm's reach; a part far larger is refused.")
-@shared("time_limit")
-def label(
-    source: Path,
-    output: Path,
-    mesh: Path | None,
-    cut: bool,
-    reach: float | None,
-    time_limit: Deadline,
-) -> Exit:
+@keywords(mesh=PATH)
+@option("--cut", bool, "Cut colors that have two solutions of a vertex.")
+@option("--reach", LENGTH, to="reach_m")
+@TIME_LIMIT
+def label(source: Path, output: Path, cut: bool, time_limit: Deadline, **wanted: Any) -> Exit:
     """Make a labelled surface of joint solutions at the vertices of a mesh, without a robot.
 
     Solutions of neighboring vertices that are clearly the nearest to each other belong to one
@@ -222,18 +191,12 @@ def label(
     from cellcolor.data.surface import LabelledSurface
     from cellcolor.door.reading import label as labelled
 
-    check_output(output, kind_of_format(LabelledSurface.FORMAT), [source, *filter(None, [mesh])])
-    with at_work(source, "matching", "not labelled: the time limit came first"):
-        found = labelled(
-            source,
-            mesh=mesh,
-            conflicts="cut" if cut else "refuse",
-            reach_m=reach,
-            deadline=time_limit,
-        )
-    INTERRUPTS.check()
-    with apart_from(output):
-        say_lines(found)
-        write([Output.of(output, found.surface)], [source])
-        say(f"wrote {output}")
+    inputs = [source, *filter(None, [wanted.get("mesh")])]
+    check_output(output, kind_of_format(LabelledSurface.FORMAT), inputs)
+    with at_work(source, "matching"):
+        wanted["conflicts"] = "cut" if cut else "refuse"
+        found = labelled(source, deadline=time_limit, **wanted)
+    say_lines(found)
+    write([Output.of(output, found.surface)], [source])
+    say(f"wrote {output}")
     return Exit.DONE

@@ -4,70 +4,49 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import click
 
-from cellcolor.cli.ending import INTERRUPTS, Exit
+from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import (
-    METRES,
+    LENGTH,
     PATH,
-    Real,
+    SHARE,
+    TIME_LIMIT,
     cellcolor,
     json_option,
+    keywords,
     option,
     output_option,
-    shared,
 )
-from cellcolor.cli.terminal import apart_from, at_work, print_json, say, say_lines
-from cellcolor.deadline import Deadline
+from cellcolor.cli.terminal import at_work, print_json, say, say_lines
 from cellcolor.errors import InputError
 from cellcolor.files.writing import FileKind, Output, check_output, write
 
 _PART = click.argument("part", metavar="PART.(stl|obj|ply)", type=PATH)
+_UNIT = keywords(unit=click.Choice(["m", "mm", "cm", "in"]))
 _JSON = json_option("One JSON object.")
 
 
-class FixedJoint(click.ParamType):  # type: ignore[type-arg]
+def _fixed(text: str) -> tuple[str, float]:
     """``rail_joint=0.4``: a joint and its position."""
-
-    name = "JOINT=POSITION"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[str, float]:
-        """Split at the last sign of equality."""
-        joint, _, position = str(value).rpartition("=")
-        try:
-            at = float(position)
-        except ValueError:
-            at = math.nan
-        if not joint or not math.isfinite(at):
-            self.fail(f"{value!r} is not JOINT=POSITION, as rail_joint=0.4", param, ctx)
-        return joint, at
+    joint, _, position = text.rpartition("=")
+    with suppress(ValueError):
+        if joint and math.isfinite(float(position)):
+            return joint, float(position)
+    raise click.BadParameter(f"{text!r} is not JOINT=POSITION, as rail_joint=0.4")
 
 
-def _once(given: Iterable[tuple[str, float]]) -> dict[str, float]:
-    """The position of each joint, which may be given once."""
-    found: dict[str, float] = {}
-    for joint, position in given:
-        if joint in found:
-            raise InputError(None, "--fix", f"{joint} is given twice")
-        found[joint] = position
-    return found
-
-
-@cellcolor.command()
+@cellcolor.command(of=("door.parts:inspect",))
 @_PART
-@shared("unit")
+@_UNIT
 @output_option("OUT.(html|png|svg)", "A picture with the faulty places marked.")
-@shared("time_limit")
+@TIME_LIMIT
 @_JSON
-def inspect(
-    part: Path, unit: str | None, output: Path | None, time_limit: Deadline, as_json: bool
-) -> Exit:
+def inspect(part: Path, output: Path | None, as_json: bool, **wanted: Any) -> Exit:
     """Look a part's mesh through: its size, and what is wrong with it.
 
     Says why a scene would refuse it, and what repair would do about that. Nothing is changed.
@@ -76,45 +55,32 @@ def inspect(
     from cellcolor.door.drawing import Drawing, kind_of_picture
 
     if output is not None:
-        kind = kind_of_picture(output)
-        check_output(output, kind, [part])
-    with at_work(part, "inspecting", "not inspected: the time limit came first") as tell:
-        found = parts.inspect(part, unit=unit, time_limit=time_limit, progress=tell)
-        if output is not None:
-            tell("drawing")
-            from cellcolor.pictures.mesh_picture import faulty_part
+        check_output(output, kind_of_picture(output), [part])
+    with at_work(part, "inspecting") as tell:
+        found = parts.inspect(part, progress=tell, **wanted)
+    if as_json:
+        print_json(found.to_dict())
+    else:
+        say_lines(found)
+    if output is not None:
+        from cellcolor.pictures.mesh_picture import faulty_part
 
-            drawn = Drawing(faulty_part(found)).render(output.suffix)
-    INTERRUPTS.check()
-    with apart_from(output):
-        if as_json:
-            print_json(found.to_dict())
-        else:
-            say_lines(found)
-        if output is not None:
-            write([Output(output, kind, [drawn])], [part])
-            if not as_json:
-                say(f"wrote {output}")
+        Drawing(faulty_part(found)).save(output)
+        if not as_json:
+            say(f"wrote {output}")
     return Exit.DONE
 
 
-@cellcolor.command()
+@cellcolor.command(of=("door.parts:repair",))
 @_PART
-@shared("unit")
+@_UNIT
 @output_option("MESH.obj", "The mesh.", required=True)
-@option("--fill-holes", METRES, "Fill holes whose border is at most this long.", to="fill_holes_m")
-@option(
-    "--least-component",
-    Real("SHARE", 0, 1),
-    "Drop components smaller than this share of the largest one's area.",
-    default=0.01,
-)
-@option("--edge-length", METRES, "Remesh to edges of about this length.", to="edge_length_m")
-@shared("time_limit")
+@option("--fill-holes", LENGTH, to="fill_holes_m")
+@keywords(least_component=SHARE)
+@option("--edge-length", LENGTH, to="edge_length_m")
+@TIME_LIMIT
 @_JSON
-def repair(
-    part: Path, output: Path, fill_holes_m: float | None, as_json: bool, **wanted: Any
-) -> Exit:
+def repair(part: Path, output: Path, as_json: bool, **wanted: Any) -> Exit:
     """Repair a part's mesh, so that a scene can use it, or say why that cannot be done.
 
     Lengths are in metres; the mesh keeps the unit of its coordinates. What was changed is listed.
@@ -125,54 +91,35 @@ def repair(
     if output.suffix != ".obj":
         raise InputError(str(output), None, "must end in .obj")
     check_output(output, kind, [part])
-    late = "not repaired: the time limit came first; nothing is written"
-    with at_work(part, "repairing", late) as tell:
-        made = parts.repair(part, fill_holes_m=fill_holes_m or 0.0, progress=tell, **wanted)
+    with at_work(part, "repairing") as tell:
+        made = parts.repair(part, progress=tell, **wanted)
         tell("writing")
         content = made.to_obj().encode()
-    INTERRUPTS.check()
-    with apart_from(output):
-        write([Output(output, kind, [content])], [part])
-        if as_json:
-            print_json(made.to_dict())
-        else:
-            say_lines(made)
-            say(f"wrote {output}, meters_per_unit = {made.meters_per_unit:g}")
+    write([Output(output, kind, [content])], [part])
+    if as_json:
+        print_json(made.to_dict())
+    else:
+        say_lines(made)
+        say(f"wrote {output}, meters_per_unit = {made.meters_per_unit:g}")
     return Exit.DONE
 
 
-@cellcolor.command()
+@cellcolor.command(of=("door.starting:new",))
 @_PART
 @click.argument("arm", metavar="ARM.urdf", type=PATH)
 @output_option("FOLDER", "Folder for the files; it is created if it does not exist.", required=True)
-@option(
-    "--tool",
-    PATH,
-    "The tool, its root fixed to the flange.  [default: a polisher of 100 mm is written]",
-    metavar="TOOL.urdf",
-)
-@option("--tip-link", None, "Of the tool.", default="tip", metavar="LINK")
-@shared("unit")
-@option(
-    "--outside",
-    click.Choice(["toward", "away", "flip"]),
-    "The side to cover: towards the robot, away from it, or the other one than the faces of an "
-    "open part have.  [default: as the faces are wound; of a shell, the outer one]",
-)
-@option(
-    "--cover",
-    click.Choice(["largest", "all"]),
-    "The largest piece between sharp edges, or all.  [default: one side of a shell, all of other "
-    "parts]",
-)
+@keywords(tool=PATH, tip_link=str)
+@_UNIT
+@keywords(flip=bool, cover=click.Choice(["largest", "all"]))
 @option(
     "--fix",
-    FixedJoint(),
+    _fixed,
     "Where a joint stands still, rad, or m of a rail. May be given several times.  [default: rails "
     "and joints beside the chain at 0]",
+    metavar="JOINT=POSITION",
     multiple=True,
 )
-@shared("time_limit")
+@TIME_LIMIT
 def new(
     part: Path, arm: Path, output: Path, fix: tuple[tuple[str, float], ...], **wanted: Any
 ) -> Exit:
@@ -184,10 +131,8 @@ def new(
     """
     from cellcolor.door.starting import new as begin
 
-    late = "the time limit came first; nothing is written"
-    with at_work(part, "beginning", late) as tell:
-        made = begin(part, arm, output, fix=_once(fix), progress=tell, **wanted)
-    INTERRUPTS.check()
+    with at_work(part, "beginning") as tell:
+        made = begin(part, arm, output, fix=dict(fix), progress=tell, **wanted)
     say(f"wrote {made.scene} and its setup: {made.reachable_share:.0%} of the part can be reached")
     for note in made.notes:
         say(f"  {note}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -17,7 +16,7 @@ from cellcolor.checker.claimed_numbers import contradictions
 from cellcolor.cli.ending import INTERRUPTS, Exit, worst
 from cellcolor.cli.inputs import read_subject
 from cellcolor.cli.tables import nothing_to_cover, print_solution
-from cellcolor.cli.terminal import apart_from, complain, line_of, print_json
+from cellcolor.cli.terminal import complain, line_of, print_json
 from cellcolor.data.solution import Division, Solution, scheme_line
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline, OutOfTime
@@ -33,7 +32,8 @@ from cellcolor.files.writing import (
     write,
 )
 from cellcolor.signals import handled_by
-from cellcolor.solvers.interface import PORTFOLIO, Options
+from cellcolor.solvers.interface import Options
+from cellcolor.solvers.registry import solver_names
 
 _SOLUTION = kind_of_format(Solution.FORMAT)
 
@@ -60,7 +60,7 @@ def solve_files(
     output: Path | None,
     tolerance: str | None,
     schemes: int | None,
-    time_limit: float | None,
+    seconds: float | None,
     first: Deadline | None,
     as_json: bool,
     **search: Any,
@@ -69,13 +69,13 @@ def solve_files(
 
     Args:
         schemes: how many optimal schemes are listed at most; None lists none.
-        time_limit: seconds for each file.
+        seconds: the time limit of each file.
         first: when they are over for the first file, for which starting the command counts.
         search: what goes on to the front door's ``solve``.
     """
     targets = _targets(files, output, schemes is not None)
     _check_able(search, schemes is not None)
-    of_a_part = search["cover"] is not None or search["left_alone"] is not None
+    of_a_part = "cover" in search or search["left_alone"] is not None
     codes: list[Exit] = []
 
     def failed(code: Exit, message: str, **known: str) -> None:
@@ -84,25 +84,24 @@ def solve_files(
             print_json({"file": str(file)} | known | {"error": message})
         codes.append(code)
 
-    with apart_from(output):
-        for file, target in zip(files, targets, strict=True):
-            deadline, first = first or Deadline.after(time_limit), None
-            try:
-                result, lines = _solve(file, deadline, tolerance, schemes, search)
-                if target is not None:
-                    _write(target, result, lines, files, of_a_part)
-            except Interrupted:
-                failed(Exit.STOPPED, f"{file}: interrupted, nothing found yet")
-            except OutOfTime:
-                message = f"{file}: unknown: the time limit came before any division was found"
-                failed(Exit.STOPPED, message, status="unknown")
-            except CellcolorError as error:
-                named = isinstance(error, InputError) and error.file
-                failed(Exit.BAD_INPUT, str(error) if named else f"{file}: {error}")
-            else:
-                codes.append(_told(file, result, of_a_part, as_json))
-            if INTERRUPTS.seen:
-                break
+    for file, target in zip(files, targets, strict=True):
+        deadline, first = first or Deadline.after(seconds), None
+        try:
+            result, lines = _solve(file, deadline, tolerance, schemes, search)
+            if target is not None:
+                _write(target, result, lines, files, of_a_part)
+        except Interrupted:
+            failed(Exit.STOPPED, f"{file}: interrupted, nothing found yet")
+        except OutOfTime:
+            message = f"{file}: unknown: the time limit came before any division was found"
+            failed(Exit.STOPPED, message, status="unknown")
+        except CellcolorError as error:
+            named = isinstance(error, InputError) and error.file
+            failed(Exit.BAD_INPUT, str(error) if named else f"{file}: {error}")
+        else:
+            codes.append(_told(file, result, of_a_part, as_json))
+        if INTERRUPTS.seen:
+            break
     return worst([*codes, Exit.STOPPED] if len(codes) < len(files) else codes)
 
 
@@ -126,22 +125,17 @@ def _told(file: Path, result: Result, of_a_part: bool, as_json: bool) -> Exit:
 
 
 def _check_able(search: dict[str, Any], every: bool) -> None:
-    """Refuse at once what the solver cannot do for any file; tell of too many workers.
+    """Refuse at once what the solver cannot do for any file.
 
     What every solver can do is not asked about: bad input has to import no solver.
     """
-    if every or search["search_space"] != "paper":
+    options = Options(search.get("search_space", "paper"), search.get("strands"))  # type: ignore[arg-type]
+    if search["solver"] not in (known := solver_names()):
+        raise click.BadParameter(f"is none of {', '.join(known)}", param_hint="--solver")
+    if every or options.search_space != "paper":
         from cellcolor.solvers.checked import check_able
 
-        options = Options(search["search_space"], search["strands"])
-        try:
-            check_able(search["solver"], options, schemes=every)
-        except InputError as error:
-            raise click.UsageError(str(error)) from error
-    workers, cores = search["workers"], os.cpu_count() or 1
-    # More workers than processors are useful in a portfolio, and slow beyond it.
-    if workers is not None and workers > max(cores, PORTFOLIO):
-        complain(f"{workers} workers share {cores} processors")
+        check_able(search["solver"], options, schemes=every)
 
 
 def _targets(files: Sequence[Path], output: Path | None, every: bool) -> list[Path | None]:
@@ -223,7 +217,8 @@ def _with_schemes(
             lines.append(scheme_line(division))
             show(f"{count(len(lines), 'scheme')} so far")
 
-        options = Options(deadline=deadline, workers=search["workers"], seed=search["seed"])
+        own = {name: search[name] for name in ("workers", "seed") if name in search}
+        options = Options(deadline=deadline, **own)
         of = result.instance, result.solution, search["solver"]
         solution = with_schemes(*of, options, most, take)
     # After a signal the last line may not be counted.

@@ -81,29 +81,26 @@ class Listener:
     def write(self, text: str) -> int:
         """Write, or note why not."""
         if self._closed and text:
-            self._lose("is closed")
-        if self.lost is None:
-            try:
-                self._stream.write(text)
-            except OSError as error:
-                self._lose(error.strerror or "cannot be written")
+            self.lost = self.lost or "is closed"
+        self._try(self._stream.write, text)
         return len(text)
 
     def flush(self) -> None:
         """Flush, or note why not."""
-        if self.lost is None:
-            try:
-                self._stream.flush()
-            except OSError as error:
-                self._lose(error.strerror or "cannot be written")
+        self._try(self._stream.flush)
 
-    def _lose(self, reason: str) -> None:
-        self.lost = reason
-        # What the buffer still holds would fail again when Python ends.
-        with suppress(OSError, ValueError):
-            handle = os.open(os.devnull, os.O_WRONLY)
-            os.dup2(handle, self._stream.fileno())
-            os.close(handle)
+    def _try(self, do: Callable[..., object], *given: str) -> None:
+        if self.lost is not None:
+            return
+        try:
+            do(*given)
+        except OSError as error:
+            self.lost = error.strerror or "cannot be written"
+            # What the buffer still holds would fail again when Python ends.
+            with suppress(OSError, ValueError):
+                handle = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(handle, self._stream.fileno())
+                os.close(handle)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
@@ -161,37 +158,26 @@ def line_of(file: Path, work: str) -> Iterator[Callable[[str], None]]:
 
 
 @contextmanager
-def stages_of(file: Path, work: str) -> Iterator[Callable[[str], None]]:
-    """The same, told what is done next.
+def at_work(file: Path, work: str) -> Iterator[Callable[[str], None]]:
+    """The same, told what is done next; errors name the file.
 
     Libraries that catch everything can swallow a signal; it is raised at the next stage.
-    """
-    with line_of(file, work) as show:
-
-        def report(stage: str) -> None:
-            INTERRUPTS.check()
-            show(stage)
-
-        yield report
-
-
-@contextmanager
-def at_work(file: Path, work: str, late: str) -> Iterator[Callable[[str], None]]:
-    """Progress of a command (:func:`stages_of`), and its end where it cannot be done.
-
-    Args:
-        file: what is worked on; an error without a file is one of this file.
-        late: what is said where the time limit comes first.
 
     Raises:
         OutOfTime: the time limit came first.
         InputError: with a file.
     """
-    try:
-        with naming(file), stages_of(file, work) as report:
+    with naming(file), line_of(file, work) as show:
+
+        def report(stage: str) -> None:
+            INTERRUPTS.check()
+            show(stage)
+
+        try:
             yield report
-    except OutOfTime as error:
-        raise OutOfTime(f"{file}: {late}") from error
+        except OutOfTime as error:
+            raise OutOfTime(f"{file}: the time limit came first") from error
+    INTERRUPTS.check()
 
 
 @contextmanager
@@ -216,21 +202,3 @@ def _each_minute(text: str) -> Iterator[Callable[[str], None]]:
     finally:
         ended.set()
         teller.join()
-
-
-@contextmanager
-def progress_bar(total: int) -> Iterator[Callable[[int, str], None]]:
-    """A bar on standard error, only where somebody watches; told what is done, and a text."""
-    if not sys.stderr.isatty():
-        yield lambda *_: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-    from rich.progress import TimeElapsedColumn as Elapsed
-    from rich.progress import TimeRemainingColumn as Remaining
-
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
-    bar = Progress(*columns, Elapsed(), Remaining(), console=Console(stderr=True), transient=True)
-    with bar:
-        task = bar.add_task("", total=total)
-        yield lambda done, text: bar.update(task, completed=done, description=text)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, ClassVar
 
 from pydantic import NonNegativeInt
 
@@ -19,11 +17,11 @@ from cellcolor.data.cells_and_edges import (
     shared_colors,
 )
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.value import Document, Drawn, Value, members_of
+from cellcolor.data.value import Document, Drawn, Value
 from cellcolor.data.wording import count
 from cellcolor.errors import refuse
-from cellcolor.files.documents import dump_lines, sha256_of
-from cellcolor.files.validation import json_content, settle
+from cellcolor.files.documents import sha256_of
+from cellcolor.files.validation import FreeContent, settle
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,17 +82,13 @@ class Instance(Document, Drawn):
     colors: tuple[str, ...]
     cells: tuple[Cell, ...]
     edges: tuple[Edge, ...]
-    meta: dict[str, Any] | None = field(default=None, hash=False)
+    meta: FreeContent | None = field(default=None, hash=False)
     surface: SurfaceReference | None = None
     known: KnownResults | None = None
     coverage: Coverage | None = None
-    # Of an instance that was read from a file of version 1. It is no member of the format.
-    _of_version_1: ClassVar[str | None] = None
 
     def __post_init__(self) -> None:
         settle(self)
-        if self.meta is not None:
-            object.__setattr__(self, "meta", json_content(self.meta, "meta"))
         refuse(faults_of_color_names(self.colors))
         check_graph(self.cells, self.edges, len(self.colors))
         refuse(
@@ -223,45 +217,3 @@ class Instance(Document, Drawn):
                 "edges": sorted([e.id, e.left, e.right, self.joinable(e.id)] for e in self.edges),
             }
         )
-
-    @property
-    def sha256_of_version_1(self) -> str:
-        """Fingerprint of this instance in a solution of version 1: that of the whole file."""
-        return self._of_version_1 or _fingerprint_of_version_1(members_of(self))
-
-    @classmethod
-    def from_document(cls, document: dict[str, Any]) -> Instance:
-        instance = super().from_document(document)
-        if document["version"] == 1:
-            # The old fingerprint depends on the order of colors, which an instance does not keep.
-            found = _fingerprint_of_version_1(document)
-            object.__setattr__(instance, "_of_version_1", found)
-        return instance
-
-
-def _fingerprint_of_version_1(body: dict[str, Any]) -> str:
-    """SHA-256 of the text that was written for an instance when there was only version 1."""
-
-    def part(element: dict[str, Any], names: Sequence[str], measure: str = "") -> dict[str, Any]:
-        taken = {name: element[name] for name in names if element.get(name) is not None}
-        size = element.get(measure)
-        return taken | ({} if size is None else {measure: float(size)})
-
-    document: dict[str, Any] = {"format": "cellcolor/instance", "version": 1}
-    document |= {"name": body["name"], "colors": body["colors"]}
-    document["cells"] = [part(c, ("id", "colors", "loops"), "area") for c in body["cells"]]
-    document["edges"] = [
-        part(e, ("id", "left", "right", "colors"), "length") for e in body["edges"]
-    ]
-    if body.get("meta") is not None:
-        document["meta"] = body["meta"]
-    if body.get("surface") is not None:
-        document["surface"] = part(body["surface"], ("path", "vertex_cell"))
-    if body.get("known") is not None:
-        document["known"] = {
-            space: part(body["known"][space], ("segments", "schemes"))
-            for space in ("paper", "surface")
-            if body["known"].get(space) is not None
-        }
-    text = dump_lines(document, frozenset({"cells", "edges"}))
-    return hashlib.sha256(text.encode()).hexdigest()

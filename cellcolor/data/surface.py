@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import GetCoreSchemaHandler
+from pydantic_core import CoreSchema, core_schema
 
 from cellcolor.arrays import Mask
 from cellcolor.data.cells_and_edges import faults_of_color_names
@@ -24,8 +26,8 @@ from cellcolor.data.value import (
 )
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError, refuse
-from cellcolor.files.documents import sha256_of, take_body
-from cellcolor.files.validation import json_content, settle
+from cellcolor.files.documents import sha256_of
+from cellcolor.files.validation import Ascending, FreeContent, settle
 from cellcolor.mesh.triangle_mesh import TriangleMesh, directed_edges
 
 _FARTHEST = 1e9  # m
@@ -45,17 +47,32 @@ class Crack(Value):
 
     i: int
     j: int
-    colors: tuple[int, ...]
+    colors: Ascending
 
     def __post_init__(self) -> None:
         settle(self)
-        ordered = (*sorted((self.i, self.j)), tuple(sorted(self.colors)))
-        for name, content in zip(("i", "j", "colors"), ordered, strict=True):
-            object.__setattr__(self, name, content)
+        for name, end in zip("ij", sorted((self.i, self.j)), strict=True):
+            object.__setattr__(self, name, end)
 
     def __str__(self) -> str:
         numbers = "color" if len(self.colors) == 1 else "colors"
         return f"crack between vertices {self.i} and {self.j}: {numbers} {listed(self.colors)}"
+
+
+class _InFile:
+    """A crack is a list of its ends and its colors in a file."""
+
+    def __get_pydantic_core_schema__(
+        self, source: type[Crack], handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        listed = handler.generate_schema(tuple[int, int, tuple[int, ...]])
+        return core_schema.json_or_python_schema(
+            core_schema.no_info_after_validator_function(lambda own: Crack(*own), listed),
+            handler(source),
+            serialization=core_schema.plain_serializer_function_ser_schema(
+                lambda own: [own.i, own.j, list(own.colors)]
+            ),
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -90,19 +107,13 @@ class LabelledSurface(WithArrays, Document, Drawn):
     colors: tuple[str, ...]
     vertices: RowsOfThree
     faces: Triples
-    vertex_colors: tuple[tuple[int, ...], ...]
-    cracks: tuple[Crack, ...] = ()
-    meta: dict[str, Any] = field(default_factory=dict)
-    given_up: tuple[int, ...] = ()
+    vertex_colors: tuple[Ascending, ...]
+    cracks: tuple[Annotated[Crack, _InFile()], ...] = ()
+    meta: FreeContent = field(default_factory=dict)
+    given_up: Ascending = ()
 
     def __post_init__(self) -> None:
         settle(self)
-        for name, content in (
-            ("vertex_colors", tuple([tuple(sorted(colors)) for colors in self.vertex_colors])),
-            ("given_up", tuple(sorted(self.given_up))),
-            ("meta", json_content(self.meta, "meta")),
-        ):
-            object.__setattr__(self, name, content)
         bad = np.argwhere(np.abs(self.vertices) > _FARTHEST)
         if len(bad):
             message = f"is beyond {_FARTHEST:g} m: areas could not be computed"
@@ -268,26 +279,3 @@ class LabelledSurface(WithArrays, Document, Drawn):
             }
             | ({"given_up": self.given_up} if self.given_up else {})
         )
-
-    def to_document(self) -> dict[str, Any]:
-        return super().to_document() | {"cracks": [[c.i, c.j, list(c.colors)] for c in self.cracks]}
-
-    @classmethod
-    def from_document(cls, document: dict[str, Any]) -> LabelledSurface:
-        raw = _SurfaceFile.from_document(take_body(document, cls.FORMAT, cls.ADDED))
-        members = {member.name: getattr(raw, member.name) for member in fields(raw)}
-        return cls(**members | {"cracks": tuple([Crack(*crack) for crack in raw.cracks])})
-
-
-@dataclass(frozen=True, slots=True)
-class _SurfaceFile(Value):
-    """The file's members; a crack is a list of its ends and its colors."""
-
-    name: str
-    colors: tuple[str, ...]
-    vertices: RowsOfThree
-    faces: Triples
-    vertex_colors: tuple[tuple[int, ...], ...]
-    cracks: tuple[tuple[int, int, tuple[int, ...]], ...] = ()
-    given_up: tuple[int, ...] = ()
-    meta: dict[str, Any] = field(default_factory=dict)

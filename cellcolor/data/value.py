@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from dataclasses import MISSING, dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields
 from functools import cache
 from os import PathLike
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ConfigDict, GetCoreSchemaHandler, NonNegativeInt, TypeAdapter
-from pydantic_core import CoreSchema
+from pydantic import (
+    AllowInfNan,
+    ConfigDict,
+    GetCoreSchemaHandler,
+    NonNegativeInt,
+    TypeAdapter,
+    ValidationError,
+)
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema, to_jsonable_python
 
 from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import (
@@ -23,7 +30,7 @@ from cellcolor.files.documents import (
     take_body,
     validate,
 )
-from cellcolor.files.validation import LeftToNumpy, settle, validate_python
+from cellcolor.files.validation import settle
 
 if TYPE_CHECKING:
     import cellcolor
@@ -139,34 +146,26 @@ class AboutAFile(Document):
 
 def members_of(value: Any, always: Collection[str] = ()) -> dict[str, Any]:
     """The members of a dataclass as JSON has them, without those left at their defaults."""
-    found = {}
-    for member in fields(value):
-        content, default = getattr(value, member.name), member.default
-        if member.default_factory is not MISSING:
-            default = member.default_factory()
-        if member.name in always or default is MISSING or content != default:
-            found[member.name.rstrip("_")] = _plain(content)
-    return found
+    adapter = adapter_of(type(value))
+    given = adapter.dump_python(value, mode="json", by_alias=True, exclude_defaults=True)
+    whole = adapter.dump_python(value, mode="json", by_alias=True)
+    return {
+        name: given.get(name, content)
+        for name, content in whole.items()
+        if name in given or name in always
+    }
 
 
 def named_members(value: Any, *names: str) -> dict[str, Any]:
     """Some members and properties of a dataclass as JSON has them, in this order."""
-    return {name: _plain(getattr(value, name)) for name in names}
+    found: dict[str, Any] = to_jsonable_python({name: getattr(value, name) for name in names})
+    return found
 
 
 def every_member_of(value: Any) -> dict[str, Any]:
     """The members of a dataclass as JSON has them, and null for what is None."""
-    return {member.name: _plain(getattr(value, member.name), True) for member in fields(value)}
-
-
-def _plain(content: Any, whole: bool = False) -> Any:
-    if isinstance(content, np.ndarray):
-        return content.tolist()
-    if isinstance(content, tuple):
-        return [part if type(part) is int else _plain(part, whole) for part in content]
-    if is_dataclass(content):
-        return every_member_of(content) if whole else members_of(content)
-    return content
+    found: dict[str, Any] = adapter_of(type(value)).dump_python(value, mode="json")
+    return found
 
 
 class Drawn:
@@ -224,8 +223,10 @@ _KINDS: dict[type, tuple[str, str]] = {
 
 
 @dataclass(frozen=True)
-class ArrayOf(LeftToNumpy):
+class ArrayOf:
     """An array's annotation: what stands for it in a file, and what it has to be.
+
+    What it makes is an array of its own, which nobody can change.
 
     Attributes:
         form: the annotation of what stands for it in a file.
@@ -242,54 +243,57 @@ class ArrayOf(LeftToNumpy):
     def __get_pydantic_core_schema__(
         self, _source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        return handler.generate_schema(self.form)
+        form = handler.generate_schema(self.form)
+        listed = core_schema.plain_serializer_function_ser_schema(lambda own: own.tolist())
+        return core_schema.json_or_python_schema(
+            core_schema.no_info_after_validator_function(self._made, form),
+            core_schema.no_info_wrap_validator_function(self._taken, form),
+            serialization=listed,
+        )
 
-    def of(self, content: Any, member: str) -> NDArray[Any]:
-        """An array of its own, which nobody can change.
-
-        Raises:
-            InputError: it has another shape, or something in it is not what it has to be.
-        """
+    def _taken(self, content: Any, handler: Callable[[Any], Any]) -> NDArray[Any]:
+        """The array of what Python has, an array or the same as in a file."""
         kinds, text = _KINDS[self.dtype]
         if not isinstance(content, np.ndarray):
-            content = validate_python(_forms(self.form), content, member)
+            content = handler(content)
         elif content.size and content.dtype.kind not in kinds:
-            raise InputError(None, member, f"must be {text}, is an array of {content.dtype}")
+            raise ValueError(f"must be {text}, is an array of {content.dtype}")
+        return self._made(content)
+
+    def _made(self, content: Any) -> NDArray[Any]:
+        text = _KINDS[self.dtype][1]
         try:
             array: NDArray[Any] = np.array(content, dtype=self.dtype)
         except OverflowError as error:
-            raise InputError(None, member, "a number is too large") from error
+            raise ValueError("a number is too large") from error
         except ValueError as error:  # rows of different lengths
-            raise InputError(None, member, f"must be rows of {text} of one length") from error
+            raise ValueError(f"must be rows of {text} of one length") from error
         if not array.size and self.width is not None and array.ndim < 2:
             array = array.reshape(0, self.width)
         if array.ndim != (1 if self.width is None else 2):
-            shape = "one row" if self.width is None else f"rows of {text}"
-            raise InputError(None, member, f"must be {shape}")
+            raise ValueError(f"must be {'one row' if self.width is None else f'rows of {text}'}")
         if self.width and array.shape[1] != self.width:
-            raise InputError(None, member, f"each entry needs {self.width} numbers")
+            raise ValueError(f"each entry needs {self.width} numbers")
         bad = np.argwhere(np.isinf(array) if self.gaps else ~np.isfinite(array))
         if len(bad):
-            place = "".join(f"[{number}]" for number in bad[0])
-            raise InputError(None, f"{member}{place}", "is not a finite number")
+            fault = PydanticCustomError("value_error", "is not a finite number")
+            place = tuple(bad[0].tolist())
+            raise ValidationError.from_exception_data(
+                "", [{"type": fault, "loc": place, "input": None}]
+            )
         array.setflags(write=False)
         return array
 
 
-@cache
-def _forms(form: Any) -> TypeAdapter[Any]:
-    return TypeAdapter(form, config=ConfigDict(strict=True))
-
-
-_Three = tuple[float, float, float]
-_ROWS = ArrayOf(tuple[tuple[float, ...], ...], np.float64, 0)
-THREES = ArrayOf(tuple[_Three, ...], np.float64, 3)
-Numbers = Annotated[NDArray[np.float64], ArrayOf(tuple[float, ...], np.float64)]
+_Number = Annotated[float, AllowInfNan()]  # what is no finite number is refused by the array
+_Rows = tuple[tuple[_Number, ...], ...]
+_Threes = tuple[tuple[_Number, _Number, _Number], ...]
+Numbers = Annotated[NDArray[np.float64], ArrayOf(tuple[_Number, ...], np.float64)]
 Integers = Annotated[NDArray[np.int64], ArrayOf(tuple[int, ...], np.int64)]
 Truths = Annotated[NDArray[np.bool_], ArrayOf(tuple[bool, ...], np.bool_)]
-Rows = Annotated[NDArray[np.float64], _ROWS]
-RowsWithGaps = Annotated[NDArray[np.float64], ArrayOf(_ROWS.form, np.float64, 0, gaps=True)]
-RowsOfThree = Annotated[NDArray[np.float64], THREES]
+Rows = Annotated[NDArray[np.float64], ArrayOf(_Rows, np.float64, 0)]
+RowsWithGaps = Annotated[NDArray[np.float64], ArrayOf(_Rows, np.float64, 0, gaps=True)]
+RowsOfThree = Annotated[NDArray[np.float64], ArrayOf(_Threes, np.float64, 3)]
 Triples = Annotated[NDArray[np.int64], ArrayOf(tuple[tuple[int, int, int], ...], np.int64, 3)]
 
 

@@ -29,7 +29,7 @@ class Search(TypedDict, total=False):
 
     Attributes:
         time_limit: seconds for all of it, None or left out for as long as it takes.
-        workers: CP-SAT's search workers, None or left out for its portfolio.
+        workers: CP-SAT's search workers, None for its portfolio.
         seed: for all random choices, 0 if it is left out.
     """
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Iterator, Sequence
 from functools import partial
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Unpack
@@ -12,10 +11,10 @@ from cellcolor.deadline import Deadline
 from cellcolor.door.asked import SearchAndTell, Work, begun, options_of
 from cellcolor.door.drawing import kind_of_picture
 from cellcolor.door.installed import extras_for
-from cellcolor.door.subject import Solvable, open_subject, scene_or_file
+from cellcolor.door.subject import Solvable, open_subject, scene_of
 from cellcolor.errors import CellcolorError, InputError
 from cellcolor.files.writing import Output, path_of, write
-from cellcolor.lab.workers import Task, Workers, as_they_end
+from cellcolor.processes import Task, as_they_end
 from cellcolor.questions.answers import Front
 from cellcolor.questions.placements import PlacedMinimum, PlacementQuestion, Placements, Pose
 from cellcolor.questions.places import Place
@@ -74,12 +73,11 @@ def explain(
         OutOfTime: the time limit came before the scene itself was solved.
     """
     options = options_of(search)
-    scene = scene_or_file(scene)
-    with extras_for("the front end"):
-        from cellcolor.frontend.prepared import prepare
-        from cellcolor.questions.explaining import explained
+    own = scene_of(scene)
+    from cellcolor.frontend.prepared import prepare
+    from cellcolor.questions.explaining import explained
 
-    return explained(prepare(scene, options.deadline), options, search.get("progress"))
+    return explained(prepare(own, options.deadline), options, search.get("progress"))
 
 
 _BATCH = 32  # placements per task; reading the scene takes as long as one or two of them
@@ -91,7 +89,7 @@ _ALL_DAY = 86_400.0  # s, the limit of a process if there is no time limit
 def place(
     scene: str | PathLike[str] | Scene,
     *,
-    jobs: int | Workers = 1,
+    jobs: int = 1,
     **question: Any,
 ) -> Placements:
     """Look for placements of a scene's part that need fewer lift-offs, and prove the best ones.
@@ -100,9 +98,10 @@ def place(
 
     Args:
         scene: its file, its shipped name, or the value.
-        jobs: processes at a time, or who does the work.
-        **question: the ranges ``x``, ``y``, ``z``, ``roll``, ``pitch`` and ``yaw``, and whatever
-            else :class:`~cellcolor.questions.placements.PlacementQuestion` and
+        jobs: processes at a time.
+        x, y, z: from where to where the part may be moved, m; None for where it is.
+        roll, pitch, yaw: the same of its angles, rad (extrinsic x, y, z).
+        **question: whatever else :class:`~cellcolor.questions.placements.PlacementQuestion` and
             :class:`~cellcolor.door.asked.Work` have.
 
     Raises:
@@ -111,24 +110,53 @@ def place(
     """
     work: Any = {name: question.pop(name) for name in Work.__annotations__ if name in question}
     deadline, report = begun(work)
-    scene = scene_or_file(scene)
-    asked = PlacementQuestion.of(**question)
-    if isinstance(jobs, int) and jobs < 1:
+    own, asked = scene_of(scene), PlacementQuestion.of(**question)
+    if jobs < 1:
         raise InputError(None, "jobs", f"must be 1 or more, is {jobs}")
-    with extras_for("the front end"):
-        from cellcolor.frontend.scene import Scene as SceneValue
-        from cellcolor.questions.searching_places import search_places
+    from cellcolor.questions.searching_places import search_places
 
-    own: Scene = scene if isinstance(scene, SceneValue) else SceneValue.read(scene)
-    workers: AbstractContextManager[Workers | None] = nullcontext()
-    if not isinstance(jobs, int):
-        workers = jobs
-    elif jobs > 1:
-        workers = Workers(jobs)
-    minima = _Minima(asked, deadline, report)
-    with workers as others:
-        alone, many = partial(minima, None), partial(minima, others)
-        return search_places(own, asked, alone, many, deadline, report)
+    minima = partial(_minima, jobs, asked, deadline)
+    return search_places(own, asked, minima, deadline, report)
+
+
+def _minima(
+    jobs: int,
+    question: PlacementQuestion,
+    deadline: Deadline,
+    scene: Scene,
+    poses: Sequence[Pose],
+    cover: float | None,
+) -> Iterator[list[PlacedMinimum]]:
+    """The minima of placements in the order in which they are done, some at a time.
+
+    Args:
+        jobs: processes at a time; this one does what there is one of.
+        cover: as of :data:`~cellcolor.questions.searching_places.Minima`.
+
+    Raises:
+        CellcolorError: a task failed, or its process was lost in every attempt.
+    """
+    from cellcolor.questions.placing import minima_at
+
+    how = 1, question.seed, question.base, cover
+    size = min(_BATCH, -(-len(poses) // jobs) or 1)
+    lost = [poses[at : at + size] for at in range(0, len(poses), size)]
+    if 1 in (jobs, len(poses)):
+        for part in lost:
+            yield minima_at(scene, part, deadline.left, *how)
+        return
+    for attempt in range(1, _ATTEMPTS + 1):
+        left = deadline.left
+        most = min(left, _ALL_DAY) + _ENDING
+        tasks = [(part, Task(minima_at, (scene, part, left, *how), most)) for part in lost]
+        lost = []
+        for part, ended in as_they_end(jobs, tasks):
+            if ended.end in ("done", "timeout", "stopped"):
+                yield ended.value or []
+            elif ended.end == "failed" or attempt == _ATTEMPTS:
+                raise CellcolorError(f"placements could not be tried: {ended.error}")
+            else:  # the process was lost; the work is repeated
+                lost.append(part)
 
 
 def save_map(found: Placements, path: str | PathLike[str]) -> None:
@@ -144,87 +172,3 @@ def save_map(found: Placements, path: str | PathLike[str]) -> None:
         from cellcolor.pictures.static import render_placements
 
         write([Output(file, kind, [render_placements(found, file.suffix[1:])])])
-
-
-class _Minima:
-    """Computes the minima of placements, possibly in other processes, each of them once.
-
-    Args:
-        question: whether the arm's base is moved instead of the part, and the seed.
-        deadline: for everything together.
-        report: is told how many placements are done.
-    """
-
-    def __init__(
-        self, question: PlacementQuestion, deadline: Deadline, report: Callable[[str], None]
-    ) -> None:
-        self._question, self._deadline, self._report = question, deadline, report
-        self._known: dict[tuple[str, Pose], PlacedMinimum] = {}
-        self._done = 0
-
-    def __call__(
-        self,
-        workers: Workers | None,
-        scene: Scene,
-        mesh: str,
-        poses: Sequence[Pose],
-        cover: float | None = None,
-    ) -> list[PlacedMinimum]:
-        """A row for each placement, in order; fewer if the deadline comes first.
-
-        Args:
-            workers: the processes that compute; None for this one.
-            scene: its own placement does not matter.
-            mesh: the name of this scene's mesh.
-            cover: the share that is enough, for bounds where nothing better is known; the same for
-                all placements of a mesh. None for whole builds.
-
-        Raises:
-            OutOfTime: the deadline came before the first.
-            CellcolorError: a task failed, or its process was lost in every attempt.
-        """
-        self._deadline.check()
-        slots = 1 if workers is None else workers.slots
-        known = {
-            pose: row
-            for (its, pose), row in self._known.items()
-            if its == mesh and (cover is not None or not row.at_least)
-        }
-        new = [pose for pose in dict.fromkeys(poses) if pose not in known]
-        size = min(_BATCH, -(-len(new) // slots) or 1)
-        parts = [new[at : at + size] for at in range(0, len(new), size)]
-        for rows in self._asked(workers, scene, parts, cover):
-            known |= {row.pose: row for row in rows}
-            self._known |= {(mesh, row.pose): row for row in rows}
-            self._done += len(rows)
-            self._report(f"{self._done} placements")
-        return [known[pose] for pose in poses if pose in known]
-
-    def _asked(
-        self,
-        workers: Workers | None,
-        scene: Scene,
-        parts: Sequence[Sequence[Pose]],
-        cover: float | None,
-    ) -> Iterator[list[PlacedMinimum]]:
-        """The rows of each part, in the order in which the parts are done."""
-        from cellcolor.questions.placing import minima_at
-
-        how = 1, self._question.seed, self._question.base, cover
-        if workers is None:
-            for part in parts:
-                yield minima_at(scene, part, self._deadline.left, *how)
-            return
-        lost = list(parts)
-        for attempt in range(1, _ATTEMPTS + 1):
-            left = self._deadline.left
-            most = min(left, _ALL_DAY) + _ENDING
-            tasks = [(part, Task(minima_at, (scene, part, left, *how), most)) for part in lost]
-            lost = []
-            for part, ended in as_they_end(workers, tasks):
-                if ended.end in ("done", "timeout", "stopped"):
-                    yield ended.value or []
-                elif ended.end == "failed" or attempt == _ATTEMPTS:
-                    raise CellcolorError(f"placements could not be tried: {ended.error}")
-                else:  # the process was lost; the work is repeated
-                    lost.append(part)

@@ -9,7 +9,6 @@ from functools import cache
 from numbers import Integral
 from os import PathLike
 from pathlib import Path
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from cellcolor.checker.division import check_solution
@@ -27,6 +26,10 @@ if TYPE_CHECKING:
     from cellcolor.checker.certificates import BoundVerdict
 
 _OPTIONS = ("color", "vertex", "branch", "solution", "plan", "marked")
+_PICTURE_OF = {"color": "color", "vertex": "arm", "solution": "segments", "plan": "plan"}
+"""What is drawn if one of these options is given."""
+_OF_RESULTS = ("segments", "why")
+"""The pictures that a result has a solution for."""
 _KINDS = {".html": HTML, ".png": PNG, ".svg": SVG}
 
 
@@ -126,26 +129,20 @@ def show(
     """
     if path is not None:
         kind_of_picture(path_of(path))
-    subject = source.subject if isinstance(source, Result) else open_subject(source)
-    usual = _usual_view(source, subject)
-    named = view is not None or any(one is not None for one in (color, vertex, solution, plan))
-    wanted = view if named else usual
-    if wanted in ("segments", "why") and solution is None and isinstance(source, Result):
-        solution = source.solution
+    result = source if isinstance(source, Result) else None
+    subject = open_subject(source) if result is None else result.subject
+    usual = "graph"
+    if subject.names_surface:
+        usual = "segments" if result is not None and result.solution.cells is not None else "cells"
     given = (color, vertex, branch, solution, plan, marked)
     options: dict[str, Any] = dict(zip(_OPTIONS, given, strict=True))
+    asked = view is not None or any(options[name] is not None for name in _PICTURE_OF)
+    if result is not None and solution is None and (view if asked else usual) in _OF_RESULTS:
+        options["solution"] = result.solution
     drawing = draw(picture_of(view, usual, options), subject, options)
     if path is not None:
         drawing.save(path)
     return drawing
-
-
-def _usual_view(source: Solvable | Result, subject: Subject) -> str:
-    """The picture that is drawn if nothing else is asked for."""
-    if not subject.names_surface:
-        return "graph"
-    found = isinstance(source, Result) and source.solution.cells is not None
-    return "segments" if found else "cells"
 
 
 def picture_of(name: str | None, usual: str, options: Mapping[str, Any]) -> Picture:
@@ -161,8 +158,7 @@ def picture_of(name: str | None, usual: str, options: Mapping[str, Any]) -> Pict
             option, or it does not take one.
     """
     if name is None:
-        asked = {"color": "color", "vertex": "arm", "solution": "segments", "plan": "plan"}
-        names = [own for part, own in asked.items() if options.get(part) is not None]
+        names = [own for part, own in _PICTURE_OF.items() if options.get(part) is not None]
         if len(names) > 1:
             raise InputError(None, None, "one of color, vertex, solution and plan at a time")
         name = names[0] if names else usual
@@ -187,10 +183,10 @@ def draw(picture: Picture, subject: Subject, options: Mapping[str, Any]) -> Draw
     Raises:
         InputError: an input is missing, or the inputs cannot be drawn together.
     """
-    view = SimpleNamespace(**{**dict.fromkeys(_OPTIONS), **options})
+    given: dict[str, Any] = {**dict.fromkeys(_OPTIONS), **options}
     file = None if subject.path is None else str(subject.path)
 
-    def vertex(asked: object, field: str = "vertex") -> int:
+    def vertex(asked: object, field: str) -> int:
         count = len(subject.surface.vertices)
         if isinstance(asked, Integral) and 0 <= int(asked) < count:
             return int(asked)
@@ -198,14 +194,14 @@ def draw(picture: Picture, subject: Subject, options: Mapping[str, Any]) -> Draw
 
     def color() -> int:
         place = None if subject.surface_path is None else str(subject.surface_path)
-        return _number(subject.surface.colors, view.color, place, "colors")
+        return _number(subject.surface.colors, given["color"], place, "colors")
 
-    def branch() -> int:
-        return _number(subject.reasons.branches, view.branch, file, "branch")
+    def plan() -> Plan:
+        return given["plan"] if isinstance(given["plan"], Plan) else Plan.read(given["plan"])
 
     @cache
     def checked() -> tuple[Solution, tuple[BoundVerdict, ...]]:
-        return _checked(subject, view.solution, on_surface="verdicts" in picture.needs)
+        return _checked(subject, given["solution"], on_surface="verdicts" in picture.needs)
 
     make: dict[str, Callable[[], object]] = {
         "build": subject.build,
@@ -214,22 +210,18 @@ def draw(picture: Picture, subject: Subject, options: Mapping[str, Any]) -> Draw
         "decomposition": lambda: subject.decomposition,
         "solution": lambda: checked()[0],
         "verdicts": lambda: checked()[1],
-        "plan": lambda: view.plan if isinstance(view.plan, Plan) else Plan.read(view.plan or ""),
+        "plan": plan,
         "reasons": lambda: subject.reasons,
         "color": color,
-        "vertex": lambda: vertex(view.vertex),
-        "marked": lambda: tuple(vertex(asked, "marked") for asked in view.marked or ()),
-        "branch": branch,
+        "vertex": lambda: vertex(given["vertex"], "vertex"),
+        "marked": lambda: tuple(vertex(asked, "marked") for asked in given["marked"]),
+        "branch": lambda: _number(subject.reasons.branches, given["branch"], file, "branch"),
     }
     if "surface" in picture.needs and not subject.names_surface:
         message = f"{subject.why_no_surface}; only the graph can be shown (--view graph)"
         raise InputError(file, "surface", message)
-    missing = {part for part in _OPTIONS if getattr(view, part) is None}
-    missing |= {"build"} if subject.built is None else set()
-    if not subject.names_surface:
-        missing |= {"surface", "decomposition"}
-    parts = {part: make[part]() for part in make if part in picture.needs}
-    parts |= {part: make[part]() for part in picture.takes if part not in missing}
+    used = (*picture.needs, *(part for part in picture.takes if given[part] is not None))
+    parts = {part: make[part]() for part in make if part in used}
     with naming(file):
         return Drawing(picture.draw(**parts))
 

@@ -51,7 +51,7 @@ def library() -> Library:
     """
     files = _files()
     known = _entries()
-    names = {name for name in files if not name.endswith((*_ENDINGS, _SOLUTION))} | known.keys()
+    names = {name for name in files if "." not in name} | known.keys()
     return Library({name: _line(files.get(name), known.get(name)) for name in sorted(names)})
 
 
@@ -112,15 +112,10 @@ def _files() -> dict[str, Path]:
                 found[path.name] = path
     for ending in _ENDINGS:
         for name, path in list(found.items()):
-            if _ending(name) == ending:
-                found.setdefault(name.removesuffix(ending), path)
+            stem = name.removesuffix(ending)
+            if "." not in stem:
+                found.setdefault(stem, path)
     return found
-
-
-def _ending(name: str) -> str:
-    if name.endswith(_SOLUTION):
-        return _SOLUTION
-    return next((end for end in reversed(_ENDINGS) if name.endswith(end)), "")
 
 
 def _entries() -> dict[str, dict[str, Any]]:

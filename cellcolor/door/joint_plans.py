@@ -15,10 +15,9 @@ from cellcolor.data.plan import ContactPath, JointPlan, Plan, VertexContacts
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import Trajectory, TrajectoryTable
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.door.installed import extras_for
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
-from cellcolor.oracle import JointViolation
+from cellcolor.oracle import JointViolation, PathVerdict
 
 if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult
@@ -47,25 +46,6 @@ class ContactColoring:
     runs: int
 
 
-@dataclass(frozen=True)
-class PathColors:
-    """The coloring that a path makes, and what is wrong with it.
-
-    Attributes:
-        coloring: what its contacts make.
-        strokes: of the path.
-        violations: the vertices that get no contact in one of their colors.
-        problems: the same in sentences, after those about samples.
-        reachable: how many vertices have colors.
-    """
-
-    coloring: ContactColoring
-    strokes: int
-    violations: tuple[JointViolation, ...]
-    problems: tuple[str, ...]
-    reachable: int
-
-
 def colors_of_joints(
     subject: Subject, plan: JointPlan, deadline: Deadline = NEVER
 ) -> tuple[Plan, tuple[JointViolation, ...]]:
@@ -76,42 +56,40 @@ def colors_of_joints(
     Raises:
         InputError: the subject is no scene, or has other numbers of vertices or joints.
     """
-    built = _built(subject)
-    with extras_for("a plan in joint angles"):
-        from cellcolor.trajectory_checker.at_vertices import at_vertices
+    built = subject.build()
+    from cellcolor.trajectory_checker.at_vertices import at_vertices
 
     surface, joints = built.surface, plan.joints
     if len(joints) != len(surface.vertices):
         message = f"{len(joints)} rows for {len(surface.vertices)} vertices"
         raise InputError(None, "joints", message)
     given = np.flatnonzero(~np.isnan(joints).all(axis=1))
-    found = at_vertices(built, given, joints[given], deadline)
+    found, why = at_vertices(built, given, joints[given], deadline)
     colors: list[int | None] = [None] * len(joints)
     reasons: dict[int, str] = {
         vertex: f"no configuration, but colors {list(own)} reach this vertex"
         for vertex, own in enumerate(surface.vertex_colors)
         if own
     }
-    for row, (vertex, color) in enumerate(zip(given.tolist(), found.color.tolist(), strict=True)):
+    for row, (vertex, color) in enumerate(zip(given.tolist(), found.tolist(), strict=True)):
         colors[vertex] = color if color >= 0 else _NO_COLOR
         reasons.pop(vertex, None)
         if color < 0:
-            reasons[vertex] = found.why_none(row)
+            reasons[vertex] = why[row]
     violations = tuple(
         _violation(built, vertex, reasons[vertex], joints[vertex]) for vertex in sorted(reasons)
     )
     return Plan(tuple(colors)), violations
 
 
-def colors_of_path(subject: Subject, given: AnyPath, deadline: Deadline = NEVER) -> PathColors:
-    """The colors that a tool path gives, and the vertices that it touches in none of their colors.
+def path_verdict(subject: Subject, given: AnyPath, deadline: Deadline = NEVER) -> PathVerdict:
+    """What is known of a tool path before its segments are counted: how it colors the surface.
 
     Raises:
         InputError: the subject is no scene, or the path is of another arm.
     """
-    built = _built(subject)
-    with extras_for("a tool path in joint angles"):
-        from cellcolor.trajectory_checker.at_vertices import touches
+    built = subject.build()
+    from cellcolor.trajectory_checker.at_vertices import touches
 
     names = built.robot.joint_names
     if isinstance(given, Trajectory) and given.joint_names != names:
@@ -123,17 +101,13 @@ def colors_of_path(subject: Subject, given: AnyPath, deadline: Deadline = NEVER)
     coloring = coloring_of(surface, found.contacts)
     reachable = [vertex for vertex, own in enumerate(surface.vertex_colors) if own]
     missing = [v for v in reachable if coloring.plan.vertex_colors[v] is None]
-    rows: dict[int, int] = {}  # the first contact of each vertex in no color
-    for row, vertex in enumerate(found.in_no_color.vertex.tolist()):
-        rows.setdefault(vertex, row)
     violations = []
     for vertex in missing:
         joints: Array | None = None
-        if vertex in rows:
-            row = rows[vertex]
-            sample = int(found.sample[row])
+        if vertex in found.in_no_color:
+            sample, why = found.in_no_color[vertex]
             joints = path.joints[sample]
-            reason = f"in contact at sample {sample}, but {found.in_no_color.why_none(row)}"
+            reason = f"in contact at sample {sample}, but {why}"
         elif np.isinf(found.nearest[vertex]):
             reason = "no contact"
         else:
@@ -141,10 +115,22 @@ def colors_of_path(subject: Subject, given: AnyPath, deadline: Deadline = NEVER)
         violations.append(_violation(built, vertex, reason, joints))
     misplaced = [
         f"points[{sample}]: the joints put the tip {1000 * by:.4g} mm from there"
-        for sample, by in zip(found.misplaced.tolist(), found.misplaced_by.tolist(), strict=True)
+        for sample, by in found.misplaced.items()
     ]
     problems = (*misplaced, *map(str, violations))
-    return PathColors(coloring, path.strokes, tuple(violations), problems, len(reachable))
+    return PathVerdict(
+        problems,
+        None,
+        None,
+        tuple(violations),
+        surface=surface,
+        plan=coloring.plan,
+        strokes=path.strokes,
+        color_changes=coloring.color_changes,
+        runs=None if problems else coloring.runs,
+        reachable=len(reachable),
+        untouched=len(missing),
+    )
 
 
 def coloring_of(surface: LabelledSurface, contacts: VertexContacts) -> ContactColoring:
@@ -179,10 +165,3 @@ def _violation(
     own = None if joints is None or np.isnan(joints).any() else tuple(joints.tolist())
     slides = tuple(np.flatnonzero(built.robot.slides).tolist())
     return JointViolation(vertex, None, (x, y, z), reason, own, slides)
-
-
-def _built(subject: Subject) -> BuildResult:
-    if subject.built is None:
-        message = "need the scene with its arm; this is only a labelled surface or an instance"
-        raise InputError(None, "joints", message)
-    return subject.built

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from os import PathLike
-from pathlib import Path
 from typing import Any, Unpack, overload
 
 from cellcolor.checker.claimed_numbers import contradictions
@@ -19,7 +18,7 @@ from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.asked import Search
 from cellcolor.door.installed import extras_for, find_claim
 from cellcolor.door.oracle import SECONDS, AnyPlan, Oracle
-from cellcolor.door.reading import ReadTrajectory, format_of_claim, read_trajectory
+from cellcolor.door.reading import ReadTrajectory, read_claim
 from cellcolor.door.subject import Result, Solvable, Subject, open_subject, solution_of
 from cellcolor.oracle import ProvenRange, Verdict, prove
 from cellcolor.questions.places import Place
@@ -86,9 +85,9 @@ def check(
         InputError: one of the two cannot be used.
         OutOfTime: the time limit came before there was a verdict on a trajectory.
     """
-    claim: Any = find_claim(solution) if isinstance(solution, (str, PathLike)) else solution
-    if isinstance(claim, Path) and format_of_claim(claim) == Trajectory.FORMAT:
-        claim = read_trajectory(claim)
+    claim: Any = solution
+    if isinstance(solution, (str, PathLike)):
+        claim = read_claim(find_claim(solution), (Solution, Trajectory))
     if isinstance(claim, (Trajectory, TrajectoryTable)):
         deadline = Deadline.of(time_limit)
         subject = open_subject(instance, deadline).left_alone(left_alone)
@@ -123,11 +122,10 @@ def judge_trajectory(
     with extras_for("the front end"):
         from cellcolor.trajectory_checker.check import check_trajectory
         from cellcolor.trajectory_checker.stated import completed
-        from cellcolor.trajectory_checker.tolerances import Limits
 
     report = progress or (lambda _: None)
     timed = isinstance(given, Trajectory) or given.times is not None
-    limits = Limits(silent=isinstance(given, TrajectoryTable))
+    silent = isinstance(given, TrajectoryTable)
     if isinstance(given, TrajectoryTable):
         given = completed(given, built.robot, deadline)
     report("proven minimum")
@@ -138,7 +136,7 @@ def judge_trajectory(
         given,
         timed=timed,
         minimum_lift_offs=lift_offs_of(bounds.lower) if bounds.exact else None,
-        limits=limits,
+        silent=silent,
         deadline=deadline,
         progress=progress,
     )

@@ -5,11 +5,10 @@ Test suites and ``cellcolor check`` use an oracle that keeps its proofs on disk.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import fields, replace
-from functools import cached_property
 from os import PathLike
-from pathlib import Path
 from typing import Any, TypeAlias, Unpack, overload
 
 from numpy.typing import NDArray
@@ -22,10 +21,11 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import Trajectory, TrajectoryTable
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.door.asked import Search, options_of
-from cellcolor.door.joint_plans import AnyPath, PathColors, colors_of_joints, colors_of_path
+from cellcolor.door.joint_plans import AnyPath, colors_of_joints, path_verdict
 from cellcolor.door.reading import color_numbers, read_claim
 from cellcolor.door.subject import Result, Solvable, open_subject
 from cellcolor.errors import BeatenBound, InputError, TooLarge, naming
+from cellcolor.files.writing import path_of
 from cellcolor.oracle import BetterPainting, PathVerdict, Proof, ProvenRange, Verdict, prove
 from cellcolor.oracle.improvement import better_painting, improvement_of
 from cellcolor.oracle.ranges import ProofCache
@@ -67,6 +67,7 @@ class Oracle:
         *,
         strands: int | None = None,
         bounds: ProvenRange | None = None,
+        cache: str | PathLike[str] | None = None,
         **search: Unpack[Search],
     ) -> None:
         """Open the surface; nothing is proved yet.
@@ -75,10 +76,11 @@ class Oracle:
             source: a labelled surface, a scene, or an instance that names its surface: its file,
                 its shipped name, the value.
             strands: corridors that may cross one topological edge, None for the usual number.
-            **search: :class:`~cellcolor.door.asked.Search`: of the proof. The time limit, 60 s if
-                it is left out, is one for building a scene as well.
             bounds: this surface's proven range, if it is known already: then nothing is proved,
                 and no better plan is looked for.
+            cache: a folder where the proof is kept for later processes, and looked for first.
+            **search: :class:`~cellcolor.door.asked.Search`: of the proof. The time limit, 60 s if
+                it is left out, is one for building a scene as well.
 
         Raises:
             InputError: the source cannot be used, or has no surface.
@@ -87,7 +89,7 @@ class Oracle:
         if bounds is not None and not isinstance(bounds, ProvenRange):
             message = f"must be what cellcolor.proven_range returns, is {bounds!r:.100}"
             raise InputError(None, "bounds", message)
-        self._time_limit = search.get("time_limit", SECONDS)
+        limit = self._time_limit = search.get("time_limit", SECONDS)
         options = options_of(search, Search)
         self._subject = open_subject(source, Deadline.of(self._time_limit))
         self._options: dict[str, Any] = {
@@ -95,12 +97,15 @@ class Oracle:
             "workers": options.workers,
             "seed": options.seed,
         }
+        self._cache: ProofCache | None = None
+        if cache is not None:
+            seconds = float(limit) if isinstance(limit, (int, float)) else Deadline.of(limit).left
+            self._cache = ProofCache(path_of(cache), seconds)
         self._known = bounds
         self._proof = None if bounds is None else Proof(bounds)
-        self._painting: BetterPainting | None = None
-        self._painted = False
-        self._without_painting = 0.0
-        """Seconds in which the better painting was not finished; 0 if that was not tried."""
+        self._best: BetterPainting | None = None
+        self._painted_in = 0.0
+        """Seconds that a painting was not finished in; infinity once no other try is needed."""
         self.surface: LabelledSurface = self._subject.surface
 
     @property
@@ -110,53 +115,12 @@ class Oracle:
         Raises:
             InputError: a cell of the surface is not planar, or an option is out of its range.
         """
-        return self.prove(Deadline.of(self._time_limit)).bounds
-
-    def prove(self, deadline: Deadline) -> Proof:
-        """The proof about the surface, made now if it has not been made yet.
-
-        Args:
-            deadline: when to stop with what is proved by then.
-
-        Raises:
-            InputError: a cell of the surface is not planar, or an option is out of its range.
-        """
-        if self._proof is None:
-            self._proof = self._made(deadline)
-        return self._proof
-
-    def _made(self, deadline: Deadline) -> Proof:
-        with naming(self._subject.path):
-            return prove(self.surface, deadline, **self._options)
+        return self._prove(Deadline.of(self._time_limit)).bounds
 
     @property
     def best(self) -> BetterPainting | None:
         """A painting with the fewest segments found; None without time or memory for one."""
-        return self._best(Deadline.of(self._time_limit))
-
-    def _best(self, deadline: Deadline) -> BetterPainting | None:
-        """The painting, made once; an attempt that ran out of time is repeated with twice that.
-
-        So a suite of plans does not pay the time limit again for every one of them.
-        """
-        if self._painted:
-            return self._painting
-        proof = self.prove(deadline)
-        seconds = deadline.left
-        if self._without_painting and seconds < 2 * self._without_painting:
-            return None
-        found = None
-        if proof.decomposition is not None and proof.solution is not None:
-            try:
-                painted = paint(self.surface, proof.decomposition, proof.solution, deadline)
-                found = better_painting(self.surface, painted)
-            except OutOfTime:
-                self._without_painting = max(seconds, 1e-3)
-                return None
-            except TooLarge:
-                pass
-        self._painting, self._painted = found, True
-        return found
+        return self._paint(Deadline.of(self._time_limit))
 
     @overload
     def judge(self, plan: AnyPath, *, deadline: Deadline | None = None) -> PathVerdict: ...
@@ -197,8 +161,12 @@ class Oracle:
         deadline = deadline or Deadline.of(self._time_limit)
         if isinstance(plan, (ContactPath, Trajectory, TrajectoryTable)):
             with naming(file):
-                found = colors_of_path(self._subject, plan, deadline)
-            return self._of_path(found, deadline)
+                path = path_verdict(self._subject, plan, deadline)
+            if path.problems:
+                return replace(path, bounds=self._known)
+            of_colors = self._of_colors(path.plan, deadline)
+            own = {member.name: getattr(of_colors, member.name) for member in fields(Verdict)}
+            return replace(path, **own)
         if isinstance(plan, JointPlan):
             colors, violations = colors_of_joints(self._subject, plan, deadline)
             if violations:
@@ -227,82 +195,66 @@ class Oracle:
         segments = found.segments
         if segments is None:
             return Verdict(found.problems, None, self._known, found.violations, **about)
-        proof = self.prove(deadline)
+        proof = self._prove(deadline)
         bounds = proof.bounds
         if segments < bounds.lower:
             raise BeatenBound(self.surface.name, segments, bounds.lower)
         # The plan shows that as many are enough, however little was proved in time.
         bounds = ProvenRange(bounds.lower, min(bounds.upper, segments))
         if segments == bounds.lower:
-            return Verdict((), segments, bounds, why=self._why, **about)
-        improvement, best = None, None if given is None else self._best(deadline)
+            return Verdict((), segments, bounds, why=proof.why_not_fewer, **about)
+        improvement, best = None, None if given is None else self._paint(deadline)
         if best is not None:
             improvement = improvement_of(self.surface, found.segment_of, best)
         about["kept_lower"] = proof.kept_lower
-        late = best is None and given is not None and not self._painted
+        late = best is None and given is not None and math.isfinite(self._painted_in)
         return Verdict((), segments, bounds, improvement=improvement, late=late, **about)
 
-    def _of_path(self, found: PathColors, deadline: Deadline) -> PathVerdict:
-        """The verdict on a tool path, by what it comes to in colors."""
-        coloring = found.coloring
-        about: dict[str, Any] = {"surface": self.surface, "plan": coloring.plan}
-        about |= {"strokes": found.strokes, "color_changes": coloring.color_changes}
-        about |= {"reachable": found.reachable, "untouched": len(found.violations)}
-        if found.problems:
-            return PathVerdict(found.problems, None, self._known, found.violations, **about)
-        of_colors = self._of_colors(coloring.plan, deadline)
-        own = {member.name: getattr(of_colors, member.name) for member in fields(Verdict)}
-        return PathVerdict(**own | about, runs=coloring.runs)
+    def _prove(self, deadline: Deadline) -> Proof:
+        """The proof about the surface, made once, with what is proved by the deadline."""
+        if self._proof is None:
+            kept = None if self._cache is None else self._cache.get(self.surface, deadline)
+            if kept is None or kept.kept_lower is not None:
+                kept = self._proved(kept, deadline)
+            self._proof = kept
+        return self._proof
 
-    def __repr__(self) -> str:
-        proved = "" if self._proof is None else f", {self._proof.bounds}"
-        return f"<{type(self).__name__} of {self.surface.name!r}{proved}>"
+    def _proved(self, kept: Proof | None, deadline: Deadline) -> Proof:
+        """A new proof, which is kept if it shows as much as the one that was kept.
 
-    @cached_property
-    def _why(self) -> str | None:
-        """Why there cannot be fewer segments than the minimum, a clause."""
-        proof = self.prove(Deadline.of(self._time_limit))
-        if proof.solution is None or proof.decomposition is None:
-            return None
-        return proof.solution.why_not_fewer(proof.decomposition.instance)
-
-
-class KeepingOracle(Oracle):
-    """An oracle that keeps its proofs on disk, and uses those that it finds there."""
-
-    def __init__(self, source: Solvable, time_limit: float, folder: Path | None) -> None:
-        """Open the surface; nothing is proved yet.
-
-        Args:
-            source: a labelled surface, a scene, or an instance that names its surface.
-            time_limit: seconds for the proof, and for building a scene before.
-            folder: where proofs are kept; None keeps none.
-
-        Raises:
-            InputError: the source cannot be used, or has no surface.
-            OutOfTime: the time limit came before there was a surface.
+        Otherwise there was no time to reach the unverified bound of that one. ``kept_lower`` tells
+        of it, and the range is what both proofs show.
         """
-        super().__init__(source, time_limit=time_limit)
-        self._seconds = time_limit
-        self._cache = None if folder is None else ProofCache(folder)
-
-    def _made(self, deadline: Deadline) -> Proof:
-        """The proof on disk, or else one made now.
-
-        If a kept bound has no certificate, the surface is proved again. If there is no time for it,
-        ``kept_lower`` is the unverified bound.
-        """
-        if self._cache is None:
-            return super()._made(deadline)
-        kept = self._cache.get(self.surface, self._seconds, deadline)
-        if kept is not None and kept.kept_lower is None:
-            return kept
-        proved = super()._made(deadline)
+        with naming(self._subject.path):
+            proved = prove(self.surface, deadline, **self._options)
         if kept is None or proved.bounds.lower >= (kept.kept_lower or 0):
-            self._cache.put(self.surface, self._seconds, proved)
+            if self._cache is not None:
+                self._cache.put(self.surface, proved)
             return proved
         if proved.solution is None or proved.bounds.upper > kept.bounds.upper:
             return kept
         lower = max(kept.bounds.lower, proved.bounds.lower)
         bounds = ProvenRange(lower, proved.bounds.upper)
         return replace(proved, bounds=bounds, kept_lower=kept.kept_lower)
+
+    def _paint(self, deadline: Deadline) -> BetterPainting | None:
+        """The painting, made once; an attempt that ran out of time is repeated with twice that.
+
+        So a suite of plans does not pay the time limit again for every one of them.
+        """
+        proof, seconds = self._prove(deadline), deadline.left
+        if seconds > 2 * self._painted_in:
+            self._painted_in = math.inf
+            if proof.decomposition is not None and proof.solution is not None:
+                try:
+                    painted = paint(self.surface, proof.decomposition, proof.solution, deadline)
+                    self._best = better_painting(self.surface, painted)
+                except OutOfTime:
+                    self._painted_in = seconds
+                except TooLarge:
+                    pass
+        return self._best
+
+    def __repr__(self) -> str:
+        proved = "" if self._proof is None else f", {self._proof.bounds}"
+        return f"<{type(self).__name__} of {self.surface.name!r}{proved}>"

@@ -30,7 +30,6 @@ def paint(
     source: Solvable,
     solution: Solution | Result | str | PathLike[str],
     *,
-    tool_radius_m: float | None = None,
     time_limit: TimeLimit = None,
 ) -> Painted:
     """Paint every vertex of a surface in the colors of a solution (docs/motion.md).
@@ -39,20 +38,17 @@ def paint(
         source: what was solved: a labelled surface, a scene, or an instance that names its
             surface; its file, its shipped name, the value.
         solution: its solution, or the file of one.
-        tool_radius_m: of the tool's footprint: for a better posture a border bends about as sharply
-            as its rim; None for that of the scene's setup, or else for one mean mesh edge.
         time_limit: seconds, None for no limit.
 
     Returns:
         A plan that the checker finds valid, on the surface refined where necessary. It has
-        exactly as many segments as the solution if these are proved to be the fewest. ``borders``
-        says what moving its borders has changed. For a scene the robot is asked about each new
-        vertex. If it cannot reach one, the refined surface is solved and painted instead, with as
-        many segments as that needs (:mod:`cellcolor.motion.scene_painting`).
+        exactly as many segments as the solution if these are proved to be the fewest. For a scene
+        the robot is asked about each new vertex. If it cannot reach one, the refined surface is
+        solved and painted instead, with as many segments as that needs
+        (:mod:`cellcolor.motion.scene_painting`).
 
     Raises:
-        InputError: one of the two cannot be used, they do not belong together, or the radius is not
-            positive.
+        InputError: one of the two cannot be used, or they do not belong together.
         OutOfTime: the time limit came first.
         TooLarge: the refined mesh would not fit into memory.
     """
@@ -65,17 +61,10 @@ def paint(
         raise InputError(None, None, f"the solution is not valid: {problems[0]}")
     if subject.built is None:
         drawn = paint_solution(surface, decomposition, solution, deadline)
-        return move_borders(drawn, tool_radius_m, deadline=deadline)
-
+        return move_borders(drawn, deadline=deadline)
     from cellcolor.motion.scene_painting import paint_scene
 
-    return paint_scene(
-        subject.built,
-        decomposition,
-        solution,
-        tool_radius_m=tool_radius_m,
-        deadline=deadline,
-    ).painted
+    return paint_scene(subject.built, decomposition, solution, deadline=deadline).painted
 
 
 def cover(
@@ -93,7 +82,10 @@ def cover(
     Args:
         surface: the painted surface, or its file; or what ``cellcolor.paint`` returns.
         plan: one color for each vertex of it, or the file of that; None with a ``Painted``.
-        pattern: ``contour`` or ``back-and-forth``, or what another package registers.
+        pattern: of the tool paths: ``contour``; ``back-and-forth``, whose rows may run along a
+            vector (``back-and-forth:X,Y,Z``), around an axis (``back-and-forth:around:X,Y,Z``) or
+            so that they turn least (``back-and-forth:fewest-turns``); or what another package
+            registers.
         spacing_m: desired distance between neighboring passes, m.
         tool_radius_m: of the tool's footprint, m.
         normals: (n, 3) outward unit normals at the vertices; those of the mesh if it is None.
@@ -147,9 +139,10 @@ def cover(
 
 def _unit_rows(normals: Any, count: int) -> Array:
     """Normals of length 1."""
-    from cellcolor.data.value import THREES
+    from cellcolor.data.value import RowsOfThree, adapter_of
+    from cellcolor.files.validation import validated
 
-    rows = THREES.of(normals, "normals")
+    (rows,) = validated(adapter_of(tuple[RowsOfThree]), (normals,), ("normals",))
     if len(rows) != count:
         raise InputError(None, "normals", f"has {len(rows)} entries for {count} vertices")
     lengths = np.linalg.norm(rows, axis=1)

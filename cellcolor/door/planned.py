@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
@@ -21,13 +20,14 @@ from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.data.wording import count
 from cellcolor.deadline import OutOfTime
 from cellcolor.door.subject import Result, Subject
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, system_errors
 from cellcolor.exports.registry import EXPORTS, exported, programs_of, why_no_program
 from cellcolor.files.writing import (
     HTML,
     SIDE_FILE,
     FileKind,
     Output,
+    Writable,
     check_output,
     is_folder_or_nothing,
     kind_of_format,
@@ -37,35 +37,38 @@ from cellcolor.files.writing import (
 from cellcolor.painting.paint import Painted
 
 if TYPE_CHECKING:
-    from cellcolor.data.trajectory_verdict import TrajectoryVerdict
-    from cellcolor.exports.interface import ArmAxes, PlannedMotion
+    from cellcolor.arrays import Array
+    from cellcolor.exports.interface import PlannedMotion
     from cellcolor.frontend import BuildReport, BuildResult
     from cellcolor.frontend.prepared import PreparedScene
-    from cellcolor.pictures.report_page.content import AnsweredScene, MotionReport
-    from cellcolor.tool_paths.measures import PathMeasures
+    from cellcolor.pictures.report_page.content import AnsweredScene
 
 
-@dataclass(frozen=True, repr=False, eq=False)
+@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
 class UnfinishedPlan:
     """A scene on its way to a motion, as far as it got within the time limit.
-
-    A trajectory is not part of it: none leaves the program without having been judged.
 
     Attributes:
         subject: the scene, built and decomposed.
         result: the fewest segments that were found, and what is proved; None before the search.
         painted: the segments on the surface, if they were painted.
         paths: where the tool goes, if that was laid out.
-        measures: of each of these paths.
+        trajectory: how the arm moves; none leaves the program without having been judged.
+        verdict: an independent judge's on it.
+        seconds: wall time of each stage.
+        answered: what was asked besides, for the page; None if nothing was.
         unanswered: the questions that have no answer, or a part of one, each with the reason.
     """
 
     subject: Subject
-    result: Result | None
-    painted: Painted | None
-    paths: ToolPaths | None
-    measures: tuple[PathMeasures, ...]
-    unanswered: tuple[str, ...] = field(default=(), kw_only=True)
+    result: Result | None = None
+    painted: Painted | None = None
+    paths: ToolPaths | None = None
+    trajectory: Trajectory | None = None
+    verdict: TrajectoryVerdict | None = None
+    seconds: Mapping[str, float] = field(default_factory=dict)
+    answered: AnsweredScene | None = None
+    unanswered: tuple[str, ...] = ()
 
     @property
     def built(self) -> BuildResult:
@@ -85,6 +88,8 @@ class UnfinishedPlan:
     @property
     def missing(self) -> str:
         """What the time limit cut off, as a sentence; "" for a whole plan."""
+        if self.verdict is not None:
+            return ""
         if self.result is None or self.result.solution.cells is None:
             cut = "before any division into segments was found"
         elif self.painted is None:
@@ -95,47 +100,56 @@ class UnfinishedPlan:
             cut = "before the arm's motion on the tool paths was planned and judged"
         return f"The time limit came {cut}."
 
-    def _report(self) -> MotionReport:
-        """What the page tells of."""
-        from cellcolor.pictures.report_page.content import MotionReport
-
-        decomposition, painted = self.subject.decomposition, self.painted
-        return MotionReport(
-            built=self.built,
-            decomposition=decomposition,
-            solution=self.solution,
-            painted=painted,
-            trajectory=None,
-            verdict=None,
-            paths=self.paths,
-            missing=self.missing,
-            lacking=self.unanswered,
-        )
+    @property
+    def lacking(self) -> tuple[str, ...]:
+        """What was asked for, or is usual, and is not there, a line each with the reason."""
+        motion = self._motion()
+        why = None if motion is None else why_no_program(motion)
+        no_program = () if why is None else (f"program for a controller: not written: {why}",)
+        return (*self.unanswered, *no_program)
 
     def page(self) -> bytes:
         """``report.html``, complete in itself: what there is, and what is missing."""
+        from cellcolor.pictures.report_page.content import MotionReport
         from cellcolor.pictures.report_page.page import render_report
 
-        return render_report(self._report())
+        motion = self._motion()
+        return render_report(
+            MotionReport(
+                built=self.built,
+                decomposition=self.subject.decomposition,
+                solution=self.solution,
+                painted=self.painted,
+                trajectory=self.trajectory,
+                verdict=self.verdict,
+                paths=self.paths if motion is None else None,
+                missing=self.missing,
+                answered=self.answered,
+                programs=() if motion is None else programs_of(motion),
+                lacking=self.lacking,
+            )
+        )
 
-    def files(self, export_step_s: float | None = None) -> dict[str, bytes]:  # noqa: ARG002
+    def files(self, export_step_s: float | None = None) -> dict[str, bytes]:
         """All files but the page, by name, as far as the plan came."""
         surface, decomposition = self.subject.surface, self.subject.decomposition
         reference = SurfaceReference(SURFACE, tuple(decomposition.vertex_cell), surface.sha256)
-        named = replace(decomposition.instance, surface=reference)
-        content = {
-            SIDE: self.built.candidates.to_bytes(),
-            SURFACE: replace(surface, meta=surface.meta | {"side_file": SIDE}).to_json().encode(),
-            "instance.json": named.to_json().encode(),
+        painted, motion = self.painted, self._motion(export_step_s)
+        values: dict[str, Writable | None] = {
+            SURFACE: replace(surface, meta=surface.meta | {"side_file": SIDE}),
+            "instance.json": replace(decomposition.instance, surface=reference),
+            "solution.json": self.solution,
+            "painted.plan.json": None if painted is None else painted.plan,
+            "painted.surface.json": None if painted is None else painted.surface,
+            "paths.json": self.paths,
+            "trajectory.json": self.trajectory,
+            "verdict.json": self.verdict,
         }
-        if self.solution is not None:
-            content["solution.json"] = self.solution.to_json().encode()
-        if self.painted is not None:
-            content["painted.plan.json"] = self.painted.plan.to_json().encode()
-            content["painted.surface.json"] = self.painted.surface.to_json().encode()
-        if self.paths is not None:
-            content["paths.json"] = self.paths.to_json().encode()
-        return content
+        return {
+            SIDE: self.built.candidates.to_bytes(),
+            **{name: own.to_json().encode() for name, own in values.items() if own is not None},
+            **({} if motion is None else exported(motion)),
+        }
 
     def save(
         self, folder: str | PathLike[str], export_step_s: float | None = None
@@ -151,34 +165,61 @@ class UnfinishedPlan:
             Their names.
 
         Raises:
-            InputError: a plan that got further is there, or something else that is not
-                overwritten; or it cannot be written.
+            InputError: files of another plan are there that these would not replace, or something
+                else that is not overwritten; or it cannot be written.
         """
-        return save(path_of(folder), self.files(export_step_s) | {"report.html": self.page()})
+        place = path_of(folder)
+        files = self.files(export_step_s) | {"report.html": self.page()}
+        for name in KINDS.keys() - files.keys():
+            if (place / name).exists():
+                other_arm = name in EXPORTS and self.verdict is not None
+                whose = "for another arm" if other_arm else "that got further"
+                message = f"belongs to a plan {whose}; files of two plans are not mixed"
+                raise InputError(str(place / name), None, message)
+        with system_errors(place, "cannot be made"):
+            place.mkdir(parents=True, exist_ok=True)
+        write([Output(place / name, KINDS[name], [files[name]]) for name in files])
+        return tuple(files)
+
+    def _motion(self, export_step_s: float | None = None) -> PlannedMotion | None:
+        """What exports are made of; None without a trajectory."""
+        from cellcolor.exports.interface import PlannedMotion
+
+        if self.trajectory is None:
+            return None
+        prepared, robot = self.built.prepared, self.built.robot
+        task, motion = prepared.setup.task, prepared.setup.motion
+        given = None if motion is None else motion.joint_velocities_rad_per_s
+        speeds = np.where(np.isnan(robot.velocity), given or np.nan, robot.velocity)
+        return PlannedMotion(
+            trajectory=self.trajectory,
+            robot=replace(robot, velocity=speeds),
+            flange=robot.frame_of(prepared.setup.robot.flange_link),
+            base=controller_base(prepared),
+            step_s=export_step_s,
+            # A tool that stands off presses on nothing.
+            force_n=0.0 if task.stand_off_m else task.normal_force_n,
+            controller=prepared.setup.controller,
+            led=bool(motion and motion.lead_m),
+            part=prepared.scene.placement.matrix,
+        )
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self.missing}>"
+        return f"<{type(self).__name__} {self.missing or self.trajectory}>"
 
 
-@dataclass(frozen=True, repr=False, eq=False)
+@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
 class PlannedScene(UnfinishedPlan):
     """A scene with its fewest lift-offs, a motion that has them, and the judge's verdict on it.
 
-    Attributes:
-        trajectory: how the arm moves.
-        verdict: an independent judge's.
-        seconds: wall time of each stage.
-        answered: what was asked besides, for the page; None if nothing was.
+    Its attributes are those of an unfinished plan, and all of them are there.
     """
 
     result: Result
     painted: Painted
     paths: ToolPaths
-    measures: tuple[PathMeasures, ...]
     trajectory: Trajectory
     verdict: TrajectoryVerdict
-    seconds: Mapping[str, float]
-    answered: AnsweredScene | None = None
 
     @property
     def solution(self) -> Solution:
@@ -186,58 +227,10 @@ class PlannedScene(UnfinishedPlan):
         return self.result.solution
 
     @property
-    def missing(self) -> str:
-        """Nothing."""
-        return ""
-
-    def _report(self) -> MotionReport:
-        return replace(
-            super()._report(),
-            trajectory=self.trajectory,
-            verdict=self.verdict,
-            paths=None,
-            answered=self.answered,
-            programs=programs_of(self._motion()),
-            lacking=self.lacking,
-        )
-
-    @property
-    def lacking(self) -> tuple[str, ...]:
-        """What was asked for, or is usual, and is not there, a line each with the reason."""
-        why = why_no_program(self._motion())
-        no_program = () if why is None else (f"program for a controller: not written: {why}",)
-        return (*self.unanswered, *no_program)
-
-    @property
     def complete(self) -> bool:
         """Whether all that was asked for is there: answers, and the program of a controller."""
         asked = self.built.scene.setup.controller is not None
-        return not self.unanswered and not (asked and why_no_program(self._motion()))
-
-    def _motion(self, export_step_s: float | None = None) -> PlannedMotion:
-        """What exports are made of."""
-        from cellcolor.exports.interface import PlannedMotion
-
-        prepared = self.built.prepared
-        task = prepared.setup.task
-        return PlannedMotion(
-            trajectory=self.trajectory,
-            axes=axes_of(prepared),
-            step_s=export_step_s,
-            # A tool that stands off presses on nothing.
-            force_n=0.0 if task.stand_off_m else task.normal_force_n,
-            controller=prepared.scene.setup.controller,
-            led=bool(prepared.scene.setup.motion and prepared.scene.setup.motion.lead_m),
-            part=prepared.scene.placement.matrix,
-        )
-
-    def files(self, export_step_s: float | None = None) -> dict[str, bytes]:
-        return {
-            **super().files(),
-            "trajectory.json": self.trajectory.to_json().encode(),
-            "verdict.json": self.verdict.to_json().encode(),
-            **exported(self._motion(export_step_s)),
-        }
+        return not (self.lacking if asked else self.unanswered)
 
     def __str__(self) -> str:
         extra = len(self.trajectory.extra_lift_offs)
@@ -266,25 +259,17 @@ class PlannedScene(UnfinishedPlan):
             said.append(f"{left_out}: {coverage}")
         return "\n".join(said)
 
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self.trajectory}>"
 
-
-def axes_of(prepared: PreparedScene) -> ArmAxes:
-    """The arm's axes, seen from the base of its controller.
+def controller_base(prepared: PreparedScene) -> Array:
+    """(4, 4) pose in the world of the link that the arm's controller counts from.
 
     Raises:
         InputError: the arm has no link that the setup names as the base.
     """
-    from cellcolor.exports.interface import ArmAxes
-
     setup = prepared.setup
     base = None if setup.controller is None else setup.controller.base_link
-    given = None if setup.motion is None else setup.motion.joint_velocities_rad_per_s
     try:
-        axes = ArmAxes.of(prepared.robot, setup.robot.flange_link, base)
-        unknown = np.isnan(axes.speeds) & (given is not None)
-        return replace(axes, speeds=np.where(unknown, given or np.nan, axes.speeds))
+        return prepared.robot.base_frame(base)
     except KeyError as error:
         message = f"no link {base!r} stands still before the first joint"
         file = None if setup.file is None else str(setup.file)
@@ -342,44 +327,3 @@ def check_folder(folder: Path, inputs: list[Path]) -> None:
     if is_folder_or_nothing(folder):
         for name, kind in KINDS.items():
             check_output(folder / name, kind, inputs)
-
-
-@contextmanager
-def make_folder(folder: Path) -> Iterator[None]:
-    """A folder, which is taken away again if nothing could be written to it.
-
-    Raises:
-        InputError: it cannot be made.
-    """
-    made = [place for place in (folder, *folder.parents) if not place.exists()]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        yield
-    except BaseException as error:
-        for place in made:
-            if place.is_dir() and not any(place.iterdir()):
-                place.rmdir()
-        if isinstance(error, OSError):
-            raise InputError(str(folder), None, error.strerror or "cannot be made") from error
-        raise
-
-
-def save(folder: Path, files: Mapping[str, bytes]) -> tuple[str, ...]:
-    """Write the files of a plan, all of them or none: their names.
-
-    Raises:
-        InputError: the folder has files of another plan that these would not replace; something
-            else is there; or it cannot be written.
-    """
-    for name in KINDS.keys() - files.keys():
-        if (folder / name).exists():
-            whose = (
-                "for another arm"
-                if name in EXPORTS and "verdict.json" in files
-                else "that got further"
-            )
-            message = f"belongs to a plan {whose}; files of two plans are not mixed"
-            raise InputError(str(folder / name), None, message)
-    with make_folder(folder):
-        write([Output(folder / name, KINDS[name], [files[name]]) for name in files])
-    return tuple(files)

@@ -4,44 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import pi
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cellcolor.data.wording import check_share, listed
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
-from cellcolor.door.asking import explain, place, tradeoff
+from cellcolor.door.asking import explain, tradeoff
 from cellcolor.door.installed import require_motion
 from cellcolor.door.planned import (
     NothingCovered,
     PlannedScene,
     PlanOutOfTime,
     UnfinishedPlan,
-    axes_of,
+    controller_base,
 )
 from cellcolor.door.solving import rest_of, solve
-from cellcolor.door.subject import Result, Subject, scene_or_file
+from cellcolor.door.subject import Result, Subject, scene_of
 from cellcolor.errors import InputError, naming
 from cellcolor.questions.places import Place
 from cellcolor.solvers.interface import Options
 
 if TYPE_CHECKING:
-    from cellcolor.data.trajectory_verdict import TrajectoryVerdict
     from cellcolor.frontend import Scene
     from cellcolor.frontend.build import StageClock
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.motion.plan import MotionPlan
-    from cellcolor.motion.scene_painting import ScenePainting
     from cellcolor.pictures.report_page.content import AnsweredScene, Answers
 
 _NEEDED = ("pinocchio", "fcl", "igl", "trimesh", "scipy", "potpourri3d")
 _FOR_SOLVING = 0.5  # share of the time left then; a proof can take any time
-_QUESTIONS = ("tradeoff", "explain", "place", "setups")  # that a plan's page can answer besides
-_MOVED = 0.1  # m; how far the question ``place`` moves the part along x and y
-_PLACEMENTS = 32  # that the question ``place`` tries
+_QUESTIONS = ("tradeoff", "explain")  # that a plan's page can answer besides
 _DIVISIONS = 3  # tried at most: another if the arm finds no way to some color
-_FOR_BUILDING = 0.6  # share of the time left then, for the question ``setups``
 
 
 def plan(
@@ -61,12 +55,11 @@ def plan(
 
     Args:
         scene: its file, its shipped name, or the value.
-        pattern: how tool paths are laid out, such as ``contour``; None for the usual one.
+        pattern: of the tool paths, as for ``cover``; None for the usual one.
         cover, left_alone: what has to be covered, as for ``solve``; the judge does not
             ask for what is left out.
-        ask: what the page is to tell besides, of ``tradeoff``, ``explain``, ``place`` and
-            ``setups``; it is asked of the whole scene in the time that is left. ``place`` moves the
-            part by up to 10 cm along x and y, ``setups`` turns it by quarter turns.
+        ask: what the page is to tell besides, of ``tradeoff`` and ``explain``, asked of the whole
+            scene in the time that is left.
         time_limit: seconds for all of it, None for as long as it takes.
         progress: told the name of each stage as it begins.
         **motion: keys of the setup's table ``[motion]``, which they replace, such as
@@ -86,46 +79,53 @@ def plan(
         if name not in _QUESTIONS:
             raise InputError(None, "ask", f"{name!r} is not one of {', '.join(_QUESTIONS)}")
     deadline = Deadline.of(time_limit)
-
-    given_or_file = scene_or_file(scene)
     require_motion("planning a motion", _NEEDED)
+    given = scene_of(scene)
     find_pattern(pattern or DEFAULT_PATTERN)
     from cellcolor.frontend.build import StageClock
     from cellcolor.frontend.prepared import prepare
-    from cellcolor.frontend.scene import Scene
     from cellcolor.motion.limits import home_of, motion_of
 
     clock = StageClock(deadline, progress)
-    given = Scene.read(given_or_file) if isinstance(given_or_file, Path) else given_or_file
     with clock.timed("preparation"):
         prepared = prepare(_with_motion(given, motion), deadline)
         # What is wrong with the motion is refused before the long work begins.
         home_of(prepared, motion_of(prepared))
-        axes_of(prepared)
+        controller_base(prepared)
     with clock.timed("colors"):
         whole = _built(prepared, given.file, StageClock(deadline, progress))
     run = _Run(whole, pattern or DEFAULT_PATTERN, clock, progress)
     try:
-        best = run.best_of(*run.divided(cover, left_alone))
-        verdict = run.judged(best)
+        planned = run.planned(cover, left_alone)
     except OutOfTime as error:
         unasked = tuple(f"{name}: not asked, the time limit came first" for name in ask)
         raise PlanOutOfTime(replace(run.so_far, unanswered=unasked)) from error
-    planned = PlannedScene(
-        best.subject,
-        best.result,
-        best.painting.painted,
-        best.planned.paths,
-        best.planned.measures,
-        best.planned.trajectory,
-        verdict,
-        clock.seconds,
-    )
     if not ask:
         return planned
     with clock.timed("questions"):
         answered, unanswered = _answered(ask, whole, deadline, progress)
     return replace(planned, answered=answered, unanswered=unanswered)
+
+
+@dataclass(frozen=True)
+class _Driven:
+    """A division with its tool paths and the motion on them; some moves may be unplanned."""
+
+    plan: UnfinishedPlan
+    motion: MotionPlan
+
+    @property
+    def cut_off(self) -> str:
+        """The colors that the arm found no way to."""
+        return listed([self.plan.built.surface.colors[color] for color in self.motion.cut_off])
+
+    def without_cut_off(self) -> Subject | None:
+        """The surface without these colors; None if that changes nothing."""
+        built = self.plan.built
+        surface = built.surface.without_colors(self.motion.cut_off)
+        if surface.vertex_colors == built.surface.vertex_colors:
+            return None
+        return Subject(self.plan.subject.path, replace(built, surface=surface))
 
 
 class _Run:
@@ -142,15 +142,17 @@ class _Run:
         clock: StageClock,
         progress: Callable[[str], None] | None,
     ) -> None:
-        self.so_far = UnfinishedPlan(whole, None, None, None, ())
+        self.so_far = UnfinishedPlan(subject=whole)
         self._pattern, self._clock, self._progress = pattern, clock, progress
         self._deadline = clock.deadline
         # On what is left out on purpose, and the share of the area that is covered then.
         self._notes: tuple[str, ...] = ()
         self._share = 1.0
 
-    def divided(self, cover: float | None, place: Place | None) -> tuple[Subject, Result]:
-        """What has to be covered, and the fewest segments of it."""
+    def planned(self, cover: float | None, place: Place | None) -> PlannedScene:
+        """The motion for what has to be covered, and what the independent judge says of it."""
+        from cellcolor.trajectory_checker.check import check_trajectory
+
         with self._clock.timed("fewest segments"):
             options = Options(deadline=self._deadline)
             subject, self._notes, self._share = rest_of(self.so_far.subject, cover, place, options)
@@ -159,42 +161,45 @@ class _Run:
             self._has(result=result)
             if result.solution.cells is None:
                 raise OutOfTime("the time limit came before any division was found")
-        return subject, result
+        best = self._best_of(subject, result)
+        self.so_far = best.plan
+        with self._clock.timed("judging"):
+            solution = best.plan.solution
+            proved = solution if solution and solution.proved_for_surface else None
+            verdict = check_trajectory(
+                best.plan.built,
+                best.motion.trajectory,
+                minimum_lift_offs=None if proved is None else proved.lift_offs,
+                deadline=self._deadline,
+                progress=self._progress,
+            )
+        self._has(trajectory=best.motion.trajectory, verdict=verdict, seconds=self._clock.seconds)
+        return PlannedScene(**vars(self.so_far))
 
-    def best_of(self, subject: Subject, result: Result) -> _Driven:
+    def _best_of(self, subject: Subject, result: Result) -> _Driven:
         """A division driven; or, where the arm finds no way to some colors, one without these.
 
         Such a division may have no more lift-offs than are proved with all colors.
         """
         tried = [self._driven(subject, result)]
-        least = tried[0].result.solution
-        while least.proved_for_surface and len(tried) < _DIVISIONS:
-            rest = _without_cut_off(tried[-1])
+        least = tried[0].plan.solution
+        while least is not None and least.proved_for_surface and len(tried) < _DIVISIONS:
+            rest = tried[-1].without_cut_off()
             if rest is None:
                 break
+            note = (
+                f"The arm found no way to what it would do in {tried[-1].cut_off}, so this division"
+                " does without, wherever it can. As many lift-offs are proved with all colors."
+            )
             try:
                 with self._clock.timed("fewest segments"):
-                    again = self._solved(rest, _cut_off_in_words(tried[-1]))
+                    again = self._solved(rest, note)
                 if again.solution.lift_offs != least.lift_offs:
                     break
                 tried.append(self._driven(rest, again))
             except OutOfTime:
                 break
-        return min(tried, key=lambda one: len(one.planned.trajectory.unplanned))
-
-    def judged(self, driven: _Driven) -> TrajectoryVerdict:
-        """What the independent judge says of a motion."""
-        from cellcolor.trajectory_checker.check import check_trajectory
-
-        solution = driven.result.solution
-        with self._clock.timed("judging"):
-            return check_trajectory(
-                driven.painting.built,
-                driven.planned.trajectory,
-                minimum_lift_offs=solution.lift_offs if solution.proved_for_surface else None,
-                deadline=self._deadline,
-                progress=self._progress,
-            )
+        return min(tried, key=lambda one: len(one.motion.trajectory.unplanned))
 
     def _has(self, **more: Any) -> None:
         self.so_far = replace(self.so_far, **more)
@@ -227,47 +232,20 @@ class _Run:
             result = self._with_notes(Result(painting.solution, subject))
         self._has(subject=subject, result=result, painted=painting.painted)
         with self._clock.timed("motion"):
-            planned = plan_motion(
+            motion = plan_motion(
                 painting.built,
                 painting.painted,
                 pattern=self._pattern,
                 deadline=self._deadline,
                 progress=self._progress,
-                on_paths=lambda paths, measures: self._has(paths=paths, measures=measures),
+                on_paths=lambda paths: self._has(paths=paths),
             )
-        return _Driven(subject, result, painting, planned)
-
-
-@dataclass(frozen=True)
-class _Driven:
-    """A division with its painting and motion; moves between strokes may be unplanned."""
-
-    subject: Subject
-    result: Result
-    painting: ScenePainting
-    planned: MotionPlan
-
-
-def _without_cut_off(driven: _Driven) -> Subject | None:
-    """The surface without the colors to which no way was found; None if that changes nothing."""
-    built = driven.painting.built
-    surface = built.surface.without_colors(driven.planned.cut_off)
-    if surface.vertex_colors == built.surface.vertex_colors:
-        return None
-    return Subject(driven.subject.path, replace(built, surface=surface))
-
-
-def _cut_off_in_words(driven: _Driven) -> str:
-    names = [driven.painting.built.surface.colors[color] for color in driven.planned.cut_off]
-    return (
-        f"The arm found no way to what it would do in {listed(names)}, so this division does "
-        "without, wherever it can. As many lift-offs are proved with all colors."
-    )
+        self._has(paths=motion.paths)
+        return _Driven(self.so_far, motion)
 
 
 def _with_motion(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     """The scene with some keys of its setup's table ``[motion]`` replaced."""
-
     if not changes:
         return scene
     with naming(scene.setup.file):
@@ -295,35 +273,21 @@ def _answered(
 ) -> tuple[AnsweredScene, tuple[str, ...]]:
     """The answers to the questions asked of a built scene, and why others have none or a part."""
     from cellcolor.pictures.report_page.content import AnsweredScene
-    from cellcolor.questions.setting_up import candidates_of, plan_of
 
-    scene = subject.build().scene
-    (x, y, z), (roll, pitch, yaw) = scene.placement.position_m, scene.placement.rpy_rad
-    around: dict[str, Any] = {"x": (x - _MOVED, x + _MOVED), "y": (y - _MOVED, y + _MOVED)}
-    turned = [(x, y, z, roll, pitch, yaw + turns * pi / 2) for turns in (1, 2, 3)]
     given: dict[str, Any] = {"time_limit": deadline, "progress": progress}
-
-    def set_ups() -> Answers:
-        found = candidates_of([scene], turned, deadline.share(_FOR_BUILDING), progress)
-        return plan_of(found, 1.0, None, Options(deadline=deadline), progress)
-
     ways: dict[str, Callable[[], Answers]] = {
         "tradeoff": lambda: tradeoff(subject, **given),
-        "explain": lambda: explain(scene, **given),
-        "place": lambda: place(scene, **around, points=_PLACEMENTS, **given),
-        "setups": set_ups,
+        "explain": lambda: explain(subject.build().scene, **given),
     }
     answers: list[Answers] = []
     unanswered: list[str] = []
     for name in (name for name in _QUESTIONS if name in names):
         try:
             answers.append(ways[name]())
+            if not answers[-1].complete:
+                unanswered.append(f"{name}: answered in part, the time limit came first")
         except OutOfTime:
             unanswered.append(f"{name}: not answered, the time limit came first")
-            continue
         except InputError as error:  # the motion is planned and judged all the same
             unanswered.append(f"{name}: not answered: {error}")
-            continue
-        if not answers[-1].complete:
-            unanswered.append(f"{name}: answered in part, the time limit came first")
     return AnsweredScene(subject.surface, subject.decomposition, tuple(answers)), tuple(unanswered)

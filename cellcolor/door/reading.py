@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from math import pi
+from collections.abc import Collection, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -72,25 +71,15 @@ def format_of_claim(file: str | PathLike[str]) -> str | None:
     return form if isinstance(form, str) else None
 
 
-def read_claim(file: str | PathLike[str]) -> Plan | Solution | ReadTrajectory:
-    """Read a plan, a trajectory or a solution, as the file says.
-
-    Raises:
-        InputError: it cannot be used; names file and member.
-    """
-    if _is_table(file):
-        return read_trajectory_csv(file)
-    found: Plan | Solution | Trajectory = read_one_of(file, (Plan, Solution, Trajectory))
-    return found
-
-
-def read_trajectory(file: str | PathLike[str]) -> ReadTrajectory:
-    """What is in a trajectory's file.
+def read_claim(
+    file: str | PathLike[str], kinds: Collection[type[Document]] = (Plan, Solution, Trajectory)
+) -> Any:
+    """Read a plan, a trajectory or a solution, as the file says; of the kinds, or a table.
 
     Raises:
         InputError: it cannot be used; names file and member, or file, line and column.
     """
-    return read_trajectory_csv(file) if _is_table(file) else Trajectory.read(file)
+    return read_trajectory_csv(file) if _is_table(file) else read_one_of(file, kinds)
 
 
 def _is_table(file: str | PathLike[str]) -> bool:
@@ -151,7 +140,7 @@ def label(
         mesh: an OBJ, PLY or STL file in m, for ``.csv``, whose vertices are numbered from 0 in the
             order of this file.
         conflicts: see :func:`~cellcolor.configurations.labelling.from_configurations`.
-        reach_m: of the arm, see there.
+        reach_m: of the arm; a part far larger is refused.
         deadline: when to give up.
 
     Raises:
@@ -159,25 +148,13 @@ def label(
         OutOfTime: the deadline came first.
     """
     path = path_of(source)
-    own = None
+    own: dict[str, Any] = {}
     if mesh is not None:
         from cellcolor.frontend.parts.mesh_file import read_mesh
 
-        own = read_mesh(path_of(mesh), deadline)
-    found = read_joint_solutions(path, None if own is None else len(own[0]))
-    vertices, faces = (found.vertices, found.faces) if own is None else own
+        own["vertices"], own["faces"] = read_mesh(path_of(mesh), deadline)
+    found = read_joint_solutions(path, len(own["vertices"]) if own else None) | own
     with naming(path):
-        assert vertices is not None  # only a CSV file has no mesh, and it was read with one
-        assert faces is not None
         return from_configurations(
-            vertices,
-            faces,
-            found.configurations,
-            names=found.names,
-            limits=found.limits,
-            periods=2 * pi if found.periods is None else found.periods,
-            conflicts=conflicts,
-            reach_m=reach_m,
-            name=path.stem,
-            deadline=deadline,
+            **found, conflicts=conflicts, reach_m=reach_m, name=path.stem, deadline=deadline
         )

@@ -12,11 +12,10 @@ import numpy as np
 from cellcolor.data.wording import check_change_over, check_share
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.asked import SearchAndTell, options_of
-from cellcolor.door.installed import extras_for
 from cellcolor.door.painting import paint
 from cellcolor.door.planned import PlannedScene
 from cellcolor.door.planning import plan
-from cellcolor.door.subject import Result, Subject, scene_or_file
+from cellcolor.door.subject import Result, Subject, scene_of
 from cellcolor.errors import InputError
 from cellcolor.questions.placements import PlacedMinimum, Placements, Pose
 from cellcolor.questions.set_ups import SetUpPlan
@@ -124,12 +123,9 @@ def setups(
         check_change_over(change_over)
     options, progress = options_of(search), search.get("progress")
     poses = _poses(at)
-    given = [scene_or_file(one) for one in (scene, *others)]
-    with extras_for("the front end"):
-        from cellcolor.frontend.scene import Scene as SceneValue
-        from cellcolor.questions.setting_up import at_stops, candidates_of, plan_of
+    scenes = [scene_of(one) for one in (scene, *others)]
+    from cellcolor.questions.setting_up import at_stops, candidates_of, plan_of
 
-    scenes = [one if isinstance(one, SceneValue) else SceneValue.read(one) for one in given]
     if stops is not None:
         scenes[:1] = at_stops(scenes[0], stops)
     building, by_hand = options.deadline.share(_FOR_BUILDING), not isinstance(at, Placements)

@@ -18,14 +18,7 @@ from cellcolor.data.wording import check_share
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.decomposition import decomposition_of
 from cellcolor.door.asked import SearchOfAPart, Work, begun, options_of
-from cellcolor.door.subject import (
-    Result,
-    Solvable,
-    Subject,
-    build_scene,
-    open_subject,
-    scene_or_file,
-)
+from cellcolor.door.subject import Result, Solvable, Subject, open_subject, scene_of
 from cellcolor.errors import InputError, TooLarge
 from cellcolor.questions.places import Place
 from cellcolor.solvers import checked
@@ -55,7 +48,8 @@ def build(scene: str | PathLike[str] | Scene, **work: Unpack[Work]) -> BuildResu
         InputError: the scene, its setup, a URDF or a mesh cannot be used; names file and field.
         OutOfTime: the time limit came first.
     """
-    return build_scene(scene_or_file(scene), *begun(work))
+    deadline, progress = begun(work)
+    return open_subject(scene_of(scene), deadline, progress).build()
 
 
 def decompose(source: Solvable, *, time_limit: TimeLimit = None) -> Instance:
@@ -119,43 +113,32 @@ def solve(
         from cellcolor.motion.posture import with_best_posture
 
         solution = with_best_posture(subject.built, subject.decomposition, solution, options)
-    notes = [*_tolerance_in_words(subject), *left_out, *solution.notes]
-    notes += _raw_minimum(subject, options)
-    notes += _minimum_modulo(solution, subject, options)
-    solution = replace(solution, notes=tuple(notes))
-    return Result(solution, subject, share)
+    notes = (*left_out, *solution.notes)
+    if subject.built is not None:
+        notes += tuple(_on_scene(subject.built, solution, options))
+    return Result(replace(solution, notes=notes), subject, share)
 
 
-def _tolerance_in_words(subject: Subject) -> tuple[str, ...]:
-    """What colors hold at, where the scene's part may stand off."""
-    tolerance = None if subject.built is None else subject.built.scene.tolerance
-    if tolerance is None:
-        return ()
-    return (
-        f"Colors hold where the part should stand and at a sample of {tolerance.samples} "
-        f"displacements by {1e3 * tolerance.position_m:g} mm and "
-        f"{degrees(tolerance.rotation_rad):g} degrees; between them nothing was asked.",
-    )
+def _on_scene(built: BuildResult, solution: Solution, options: Options) -> Iterator[str]:
+    """Notes on what a scene's minimum depends on: tolerance, slivers, and cuts at joint limits.
 
-
-def _raw_minimum(subject: Subject, options: Options) -> Iterator[str]:
-    """A note on the whole surface, where a scene's slivers were given up."""
-    built = subject.built
-    if built is not None and built.raw_surface is not None:
+    A color that winds around is cut in a few places. Wherever it is cut, the minimum without joint
+    limits is a lower bound.
+    """
+    tolerance = built.scene.tolerance
+    if tolerance is not None:
+        yield (
+            f"Colors hold where the part should stand and at a sample of {tolerance.samples} "
+            f"displacements by {1e3 * tolerance.position_m:g} mm and "
+            f"{degrees(tolerance.rotation_rad):g} degrees; between them nothing was asked."
+        )
+    if built.raw_surface is not None:
         areas = built.raw_surface.vertex_areas
         slivers = areas[built.slivers].sum() / areas.sum()
         found = _solved_beside(built.raw_surface, options)
         yield f"{slivers:.1%} of the area was given up as slivers; with nothing given up: {found}"
-
-
-def _minimum_modulo(solution: Solution, subject: Subject, options: Options) -> Iterator[str]:
-    """A note on the minimum without joint limits, where a color winds around.
-
-    Such a color is cut in a few places; wherever it is cut, that minimum is a lower bound.
-    """
-    modulo = None if subject.built is None else subject.built.modulo_surface
-    if modulo is not None:
-        found = _solved_beside(modulo, options)
+    if built.modulo_surface is not None:
+        found = _solved_beside(built.modulo_surface, options)
         least = found.surface_lower_bound if isinstance(found, Solution) else 0
         needed = "as many segments are" if least == solution.segments else f"at least {least} are"
         note = "Colors that wind around are cut where the joint limits are; wherever they are cut, "

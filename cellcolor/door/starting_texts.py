@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
+
 MARK = "# begun by cellcolor new"
 
 TOOL = """<!-- begun by cellcolor new: a polisher on the axis of the last joint, 100 mm long -->
@@ -29,10 +32,13 @@ SETUP = (
 arm_urdf = $arm_urdf
 kinematics = $family                # the family of the arm, which has its inverse kinematics
 flange_link = $flange               # where the tool's root link is fixed
-${mount}tool_urdf = $tool
+mount_position_m = $mount_at   # of the tool's root link on it
+mount_rpy_rad = $mount_turned      # turns the tool's z axis onto the last joint's
+tool_urdf = $tool
 tip_link = $tip                     # where the tool touches; its z axis goes into the part
 locked_joint_6_rad = 0.0            # the tool may turn about its axis: the last joint stands still
-${fixed}may_touch_ground = $standing
+fixed_joints = {$fixed}             # joints that stand still, rad or m
+may_touch_ground = $standing
 may_touch = $touching               # pairs of links that overlap in every posture
 # mesh_collision_of = { some_link = "exact" }   # a link's mesh itself instead of its convex hull
 
@@ -43,7 +49,7 @@ contact_radius_m = 0.005            # obstacles and the ground stay farther off 
 gravity_m_per_s2 = [0.0, 0.0, -9.81]
 
 [constraints]
-force = $force                      # whether torques are tested; $why_force
+force = $force                      # whether torques are tested; URDFs need masses and efforts
 
 # How near a singularity is too near, as shares of the cube of the arm's reach.
 [thresholds]
@@ -72,13 +78,14 @@ speed_m_per_s = 0.05                # of the tool on the part
 approach_speed_m_per_s = 0.02       # of the tool within 10 mm of a touch
 # transfer_speed_m_per_s = 0.25     # of the tool between strokes
 # least_feed = 0.8                  # less than this share of the speed is a fault
-$velocities
-joint_accelerations_rad_per_s2 = $accelerations   # take the data sheet's
-# joint_jerks_rad_per_s3 = $jerks   # for the judge, if there is a limit
+# Velocities lower than the URDF's, or in place of those that it lacks: take the data sheet's.
+${velocities}joint_velocities_rad_per_s = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
+joint_accelerations_rad_per_s2 = [5.0, 5.0, 5.0, 5.0, 5.0, 5.0]   # take the data sheet's
+# joint_jerks_rad_per_s3 = [1e3, 1e3, 1e3, 1e3, 1e3, 1e3]   # for the judge, if there is a limit
 retract_m = 0.05                    # along the normal, before moving on
 clearance_m = 0.005                 # to everything, between strokes
 # Where the arm begins and ends; free in this scene, over the part if there is room.
-$home
+home_rad = $home
 
 # Of divisions with as few lift-offs the one nearest to home_rad (docs/motion.md, "Posture").
 # [prefer]
@@ -104,7 +111,8 @@ file = $part
 meters_per_unit = $meters_per_unit              # 0.001 for a file in millimeters
 max_edge_m = $max_edge                   # longer edges are halved; finer meshes take longer
 repair = $repair
-$flip$cover
+flip = $flip                        # of an open part the other side is the outside
+$cover
 # Put where the arm reaches the part best, of nine places before the robot.
 [placement]
 position_m = $position              # of the file's origin, from the robot's root link
@@ -120,3 +128,8 @@ height_m = 0.0
 # rpy_rad = [0.0, 0.0, 0.0]
 """
 )
+
+
+def relative(file: Path, folder: Path) -> str:
+    """How a text in a folder names a file."""
+    return Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()

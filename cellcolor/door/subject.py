@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
@@ -21,7 +21,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of, locate
 from cellcolor.decomposition.on_mesh import wrong_cell
 from cellcolor.door.installed import extras_for, find_file
-from cellcolor.errors import InputError, naming
+from cellcolor.errors import InputError, naming, refuse
 from cellcolor.files.writing import Output, path_of, write
 from cellcolor.questions.places import Place, chosen
 
@@ -63,35 +63,31 @@ class Subject:
     def graph(self, deadline: Deadline = NEVER) -> Instance:
         """The instance; an instance from a file refers to the surface as if it lay beside the file.
 
-        Args:
-            deadline: when the decomposition has to end.
-
         Raises:
             InputError: the surface cannot be decomposed.
-            OutOfTime: the deadline came before there was an instance.
         """
         if self.given_instance is not None:
             return self.given_instance
-        return self._made(deadline).instance
-
-    def _made(self, deadline: Deadline = NEVER) -> Decomposition:
-        """The decomposition of the surface, made once."""
         if self._decomposed is None:
+            name = None if self.path is None else self.path.name
+            if self.built is not None and self.path is not None:
+                name = f"{self.path.stem}.surface.json"
             with naming(self.path):
-                self._decomposed = decomposition_of(self.surface, self._reference, deadline)
-        return self._decomposed
+                self._decomposed = decomposition_of(self.surface, name, deadline)
+        return self._decomposed.instance
 
-    @cached_property
+    @property
     def decomposition(self) -> Decomposition:
         """The graph on the surface.
 
         Raises:
             InputError: there is no surface, or it cannot be decomposed.
         """
-        if self.given_instance is not None and self.given_instance.surface is not None:
-            instance = self.given_instance
-            return locate(self.surface, instance, self.given_instance.surface.vertex_cell)
-        return self._made()
+        surface, instance = self.surface, self.graph()
+        if self._decomposed is None:  # of an instance
+            assert instance.surface is not None
+            self._decomposed = locate(surface, instance, instance.surface.vertex_cell)
+        return self._decomposed
 
     @cached_property
     def reasons(self) -> CandidateTable:
@@ -100,13 +96,11 @@ class Subject:
         Raises:
             InputError: it is a value that no front end has built, or there is no file of them.
         """
-        if self.built is None:
-            if self.surface_path is None:
-                raise InputError(
-                    None, "reasons", "are known only for a scene, or for a surface's file"
-                )
-            return CandidateTable.beside(self.surface, self.surface_path)
-        return self.built.candidates
+        if self.built is not None:
+            return self.built.candidates
+        if self.surface_path is None:
+            raise InputError(None, "reasons", "are known only for a scene, or for a surface's file")
+        return CandidateTable.beside(self.surface, self.surface_path)
 
     def build(self) -> BuildResult:
         """What the front end found.
@@ -115,7 +109,8 @@ class Subject:
             InputError: this is no scene.
         """
         if self.built is None:
-            raise InputError(self._file, "format", "only a scene (.toml) has an arm")
+            file = None if self.path is None else str(self.path)
+            raise InputError(file, "format", "only a scene (.toml) has an arm")
         return self.built
 
     @cached_property
@@ -127,12 +122,11 @@ class Subject:
         """
         if self.given_surface is not None:
             return self.given_surface
-        assert self.given_instance is not None
-        if not self.names_surface:
-            raise InputError(self._file, "surface", self.why_no_surface)
-        assert self.surface_path is not None
-        surface = LabelledSurface.read(self.surface_path)
-        self._same_surface(self.given_instance, surface)
+        with naming(self.path):
+            if self.surface_path is None or not self.names_surface:
+                raise InputError(None, "surface", self.why_no_surface)
+            surface = LabelledSurface.read(self.surface_path)
+            refuse(self._faults_of(surface))
         return surface
 
     @property
@@ -189,46 +183,30 @@ class Subject:
         instance = self.given_instance
         if instance is None or instance.surface is None:
             return None
-        if self.given_surface is None and (
-            self.path is None or self.surface_path is None or not self.surface_path.is_file()
-        ):
-            return instance.surface.path
-        cells = instance.surface.vertex_cell
-        wrong = wrong_cell(self.surface, instance, cells, deadline)
+        reference = instance.surface
+        file = self.surface_path
+        if self.path is None or file is None or not file.is_file():
+            return reference.path
+        wrong = wrong_cell(self.surface, instance, reference.vertex_cell, deadline)
         if wrong is not None:
-            message = (
-                f"not those on the surface {instance.surface.path}, in the part with cell {wrong}"
-            )
-            raise InputError(self._file, "edges", message)
+            what = f"not those on the surface {reference.path}, in the part with cell {wrong}"
+            raise InputError(str(self.path), "edges", what)
         return None
 
-    @property
-    def _file(self) -> str | None:
-        return None if self.path is None else str(self.path)
-
-    @property
-    def _reference(self) -> str | None:
-        if self.path is None:
-            return None
-        return f"{self.path.stem}.surface.json" if is_scene(self.path) else self.path.name
-
-    def _same_surface(self, instance: Instance, surface: LabelledSurface) -> None:
-        """Refuse a surface that is not the one the instance was made of."""
+    def _faults_of(self, surface: LabelledSurface) -> Iterator[tuple[str, str]]:
+        """Why a surface is not the one that the instance was made of."""
+        instance = self.given_instance
+        assert instance is not None
         assert instance.surface is not None
-        cells, fingerprint = instance.surface.vertex_cell, instance.surface.sha256
-        if fingerprint is not None and fingerprint != surface.sha256:
-            message = (
-                f"{instance.surface.path} is not the surface that this instance was built from"
-            )
-            raise InputError(self._file, "surface.sha256", message)
+        path, cells = instance.surface.path, instance.surface.vertex_cell
+        if instance.surface.sha256 not in (None, surface.sha256):
+            yield "surface.sha256", f"{path} is not the surface that this instance was built from"
         if instance.colors != surface.colors or len(cells) != len(surface.vertices):
-            message = "the surface has other colors or vertices"
-            raise InputError(self._file, "surface.path", message)
+            yield "surface.path", "the surface has other colors or vertices"
         for vertex, cell in enumerate(cells):
             own = () if cell == OUTSIDE else tuple(sorted(instance.cells[cell].colors))
             if own != surface.vertex_colors[vertex]:
-                field = f"surface.vertex_cell[{vertex}]"
-                raise InputError(self._file, field, "the surface has other colors there")
+                yield f"surface.vertex_cell[{vertex}]", "the surface has other colors there"
 
 
 def open_subject(
@@ -251,23 +229,32 @@ def open_subject(
         return Subject(None, given_instance=source)
     if isinstance(source, LabelledSurface):
         return Subject(None, given_surface=source)
-    if is_made_by(source, "cellcolor.frontend.build", "BuildResult"):
+    if _is_made_by(source, "cellcolor.frontend.build", "BuildResult"):
         return Subject(None, source)  # type: ignore[arg-type]
-    if is_made_by(source, "cellcolor.frontend.scene", "Scene"):
-        return Subject(None, build_scene(source, deadline, progress))  # type: ignore[arg-type]
-    if not isinstance(source, (str, PathLike)):
-        message = f"must be a scene, a surface, an instance or a file of one, is {source!r:.100}"
-        raise InputError(None, None, message)
-    path = find_file(source)
-    if is_scene(path):
-        return Subject(path, build_scene(path, deadline, progress))
-    found = read_graph(path)
-    if isinstance(found, Instance):
-        return Subject(path, given_instance=found)
-    return Subject(path, given_surface=found)
+    path = None
+    if not _is_made_by(source, "cellcolor.frontend.scene", "Scene"):
+        if not isinstance(source, (str, PathLike)):
+            kinds = "a scene, a surface, an instance or a file of one"
+            raise InputError(None, None, f"must be {kinds}, is {source!r:.100}")
+        path = find_file(source)
+        if path.suffix.lower() in _MESHES and path.is_file():
+            message = "is a mesh, which has no colors: cellcolor new makes a scene of it and an arm"
+            raise InputError(str(path), None, message)
+        if not is_scene(path):
+            found: Instance | LabelledSurface = read_one_of(path, (Instance, LabelledSurface))
+            if isinstance(found, Instance):
+                return Subject(path, given_instance=found)
+            return Subject(path, given_surface=found)
+    scene = scene_of(path or source)  # type: ignore[arg-type]
+    from cellcolor.frontend import build_surface
+
+    return Subject(path, build_surface(scene, deadline, progress))
 
 
-def is_made_by(value: object, module: str, name: str) -> bool:
+_MESHES = (".stl", ".obj", ".ply")
+
+
+def _is_made_by(value: object, module: str, name: str) -> bool:
     """Whether a value is of a class, without importing the class: any value has imported it."""
     kind = getattr(sys.modules.get(module), name, None)
     return isinstance(kind, type) and isinstance(value, kind)
@@ -278,50 +265,20 @@ def is_scene(path: Path) -> bool:
     return path.suffix == ".toml"
 
 
-def scene_or_file(scene: str | PathLike[str] | Scene) -> Scene | Path:
-    """A scene that is a value, or the file of one that is named.
+def scene_of(scene: str | PathLike[str] | Scene) -> Scene:
+    """A scene: its file, its shipped name, or the value.
 
     Raises:
-        InputError: there is no such file, or it is no scene's.
+        InputError: there is no such file, it cannot be used, or the front end is not installed.
     """
-    if is_made_by(scene, "cellcolor.frontend.scene", "Scene"):
+    if _is_made_by(scene, "cellcolor.frontend.scene", "Scene"):
         return scene  # type: ignore[return-value]
     path = find_file(scene)  # type: ignore[arg-type]
     if not is_scene(path):
         raise InputError(str(path), None, "is no scene: a scene is a file .toml")
-    return path
-
-
-def build_scene(
-    scene: Path | Scene,
-    deadline: Deadline = NEVER,
-    progress: Callable[[str], None] | None = None,
-) -> BuildResult:
-    """Run the front end.
-
-    Raises:
-        InputError: the scene cannot be used, or the front end is not installed.
-    """
-    with extras_for("the front end" if not isinstance(scene, Path) else scene):
-        from cellcolor.frontend import build_surface
-
-    return build_surface(scene, deadline, progress)
-
-
-_MESHES = (".stl", ".obj", ".ply")
-
-
-def read_graph(path: Path) -> Instance | LabelledSurface:
-    """Read an instance or a labelled surface, as the file says.
-
-    Raises:
-        InputError: the file cannot be read, is neither, or holds something forbidden.
-    """
-    if path.suffix.lower() in _MESHES and path.is_file():
-        message = "is a mesh, which has no colors: cellcolor new makes a scene of it and an arm"
-        raise InputError(str(path), None, message)
-    found: Instance | LabelledSurface = read_one_of(path, (Instance, LabelledSurface))
-    return found
+    with extras_for(path):
+        from cellcolor.frontend import Scene as SceneValue
+    return SceneValue.read(path)
 
 
 @dataclass(frozen=True, repr=False)

@@ -9,15 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from cellcolor.arrays import Array, Index
-from cellcolor.exports.interface import ArmAxes, Export, NotForThisArm, PlannedMotion
+from cellcolor.exports.interface import Export, NotForThisArm, PlannedMotion
 from cellcolor.exports.languages import LANGUAGES, Job, Language, Move
 from cellcolor.exports.samples import Samples, slopes, stretches, via_points
 from cellcolor.frontend.setup import Controller
+
+if TYPE_CHECKING:
+    from cellcolor.frontend.arm.robot import Robot
 
 UR_STEP = 0.008  # s; the rate at which a UR controller is fed unless another is asked for
 WITHIN = 5e-4  # rad from the samples between via points
@@ -53,14 +57,14 @@ def controller_of(planned: PlannedMotion) -> Controller:
     Raises:
         NotForThisArm: there is no program for any controller of this arm; the text says why.
     """
-    axes, given = planned.axes, planned.controller
-    if axes is None or len(axes.names) != 6 or axes.slides:
+    robot, given = planned.robot, planned.controller
+    if robot is None or len(robot.turning) != 6 or robot.joints != 6:
         raise NotForThisArm("the arm does not have six joints that turn")
-    if given is None and not _named_as_ur(axes):
+    if given is None and not _named_as_ur(robot):
         raise NotForThisArm("the setup names no controller (table [controller], key language)")
     controller = given or Controller(language="urscript")
     if _is_ur(controller):
-        _check_ur(axes)
+        _check_ur(robot)
     return controller
 
 
@@ -77,11 +81,11 @@ def shown(controller: Controller, joints: Array) -> Array:
 
 
 def _lines(planned: PlannedMotion, language: Language, linear: bool) -> Iterator[str]:
-    controller, axes = controller_of(planned), planned.axes
-    assert axes is not None
+    controller, robot = controller_of(planned), planned.robot
+    assert robot is not None
     step = planned.step_s or (UR_STEP if language.stepped else None)
     found = stretches(planned.trajectory, step)
-    base = _ur_base(axes) if _is_ur(controller) else axes.base
+    base = _ur_base(planned.base, robot) if _is_ur(controller) else planned.base
     tool, work_object = controller.frames
     job = Job(
         name="cellcolor_linear" if linear else "cellcolor",
@@ -89,7 +93,7 @@ def _lines(planned: PlannedMotion, language: Language, linear: bool) -> Iterator
             planned, controller, base, linear, max((own.beside for own in found), default=0)
         ),
         tool=str(tool),
-        tip=np.linalg.inv(axes.flange) @ axes.tip,
+        tip=np.linalg.inv(planned.flange) @ robot.tip,
         work_object=str(work_object),
         part=np.linalg.inv(base) @ planned.part,
         stretches=len(found),
@@ -98,7 +102,7 @@ def _lines(planned: PlannedMotion, language: Language, linear: bool) -> Iterator
     )
     yield from language.head(job)
     for number, own in enumerate(found, start=1):
-        moves = _moves(planned, controller, axes, own, linear)
+        moves = _moves(planned, controller, robot, own, linear)
         start = next(moves)
         yield from language.begin(number, start)
         yield from language.press(job) if start.presses else ()
@@ -154,14 +158,17 @@ def _remarks(
 def _moves(
     planned: PlannedMotion,
     controller: Controller,
-    axes: ArmAxes,
+    robot: Robot,
     own: Samples,
     linear: bool,
 ) -> Iterator[Move]:
     """The places that a stretch leads to, the first one where it begins."""
-    poses = np.linalg.inv(planned.part) @ axes.tips(own.joints)
-    turns, tips = _quaternions(poses[:, :3, :3]), poses[:, :3, 3]
-    presses = _presses(own, -poses[:, :3, 2]) if planned.force_n else np.zeros(0, dtype=np.int64)
+    from cellcolor.frontend.arm.kinematics import forward, turned
+
+    poses, seen = forward(robot, own.joints), np.linalg.inv(planned.part)
+    turns = _quaternions(seen[:3, :3] @ turned(poses.rotation[:, -1], robot.tip[:3, :3]))
+    tips = poses.tip @ seen[:3, :3].T + seen[:3, 3]
+    presses = _presses(own, -poses.tool_axis) if planned.force_n else np.zeros(0, dtype=np.int64)
     edges = np.flatnonzero(np.diff(own.contact))
     kept = np.concatenate([edges, edges + 1, presses])
     rows = via_points(own.times, own.joints / WITHIN, kept)
@@ -197,7 +204,7 @@ def _moves(
             stops=place == len(rows) - 1 or row in resting,
             feed=feed_of[stroke[row]] if place and straight[before:row].all() and contact else 0.0,
             room=float(min(np.linalg.norm(tips[row] - tips[n]) for n in (before, after))),
-            share=_share(axes, own, before, row),
+            share=_share(robot, own, before, row),
         )
         before = row
 
@@ -209,11 +216,11 @@ def _quaternions(turns: Array) -> Array:
     return np.asarray(found * np.cumprod(np.where([False, *opposite], -1.0, 1.0))[:, None])
 
 
-def _share(axes: ArmAxes, own: Samples, before: int, row: int) -> float:
+def _share(robot: Robot, own: Samples, before: int, row: int) -> float:
     """What share of a joint's fastest speed a move takes, at most."""
     passed = max(own.times[row] - own.times[before], 1e-9)
     speeds = np.abs(own.joints[row] - own.joints[before]) / passed
-    return float(np.nan_to_num(speeds / axes.speeds).max())
+    return float(np.nan_to_num(speeds / robot.velocity).max())
 
 
 def _presses(own: Samples, outward: Array) -> Index:
@@ -227,31 +234,41 @@ def _presses(own: Samples, outward: Array) -> Index:
     return np.array(found, dtype=np.int64)
 
 
-def _named_as_ur(axes: ArmAxes) -> bool:
-    return all(name.endswith(usual) for name, usual in zip(axes.names, _UR_JOINTS, strict=True))
+def _named_as_ur(robot: Robot) -> bool:
+    names = zip(robot.joint_names, _UR_JOINTS, strict=True)
+    return all(name.endswith(usual) for name, usual in names)
 
 
-def _ur_base(axes: ArmAxes) -> Array:
+def _at_zero(robot: Robot) -> tuple[Array, Array]:
+    """A point (joints, 3) on each axis, m, and the axes (joints, 3), with all joints at zero."""
+    from cellcolor.frontend.arm.kinematics import forward
+
+    poses = forward(robot, np.zeros((1, robot.joints)))
+    return poses.origin[0, 1:], poses.axis[0]
+
+
+def _ur_base(base: Array, robot: Robot) -> Array:
     """(4, 4) pose of the controller's base: at zero the arm is stretched out along its -x."""
-    base, up = axes.base.copy(), axes.directions[0]
-    out = np.cross(axes.directions[1], up)
+    base, (_, (up, across, *_)) = base.copy(), _at_zero(robot)
+    out = np.cross(across, up)
     base[:3, :3] = np.stack([-out, -np.cross(up, out), up], axis=1)
     return base
 
 
-def _check_ur(axes: ArmAxes) -> None:
+def _check_ur(robot: Robot) -> None:
     """Refuse an arm unless its axes, however it is mounted, are those of Universal Robots."""
-    if not _named_as_ur(axes):
+    if not _named_as_ur(robot):
         raise NotForThisArm("its joints are not named as those of Universal Robots are")
-    up, across = axes.directions[:2]
+    points, axes = _at_zero(robot)
+    up, across = axes[:2]
     wanted = (up, across, across, across, -up, across)
-    off = np.linalg.norm(axes.directions - wanted, axis=1)
+    off = np.linalg.norm(axes - wanted, axis=1)
     if abs(up @ across) > 0.02 or (off > 0.02).any():
         number = int(np.argmax(off)) + 1
         raise NotForThisArm(
             f"at zero its axis {number} does not turn as that of arms of Universal Robots; give "
             "signs or offsets in the table [controller]"
         )
-    steps = np.diff(axes.points[1:4], axis=0)
+    steps = np.diff(points[1:4], axis=0)
     if (steps @ np.cross(across, up) <= 0.05).any() or (np.abs(steps @ up) > 0.02).any():
         raise NotForThisArm("at zero it is not stretched out along x, as a UR controller has it")

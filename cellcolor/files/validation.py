@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import json
 import re
-from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import fields
 from functools import cache
-from types import NoneType
-from typing import Any, TypeVar, get_args, get_type_hints
+from typing import Annotated, Any, TypeVar, get_type_hints
 
 import numpy as np
-from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic import AfterValidator, ConfigDict, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from cellcolor.errors import InputError
@@ -20,18 +19,6 @@ from cellcolor.files.documents import field_name, first_fault
 T = TypeVar("T")
 
 _STRICT = ConfigDict(strict=True, allow_inf_nan=False)
-
-
-class LeftToNumpy(ABC):
-    """Annotates members that are arrays of numpy, which :func:`settle` has made by it."""
-
-    @abstractmethod
-    def of(self, content: Any, member: str) -> Any:
-        """The array of what was given for a member.
-
-        Raises:
-            InputError: it cannot be made of that.
-        """
 
 
 def settle(value: object) -> None:
@@ -44,44 +31,34 @@ def settle(value: object) -> None:
     Raises:
         InputError: a member is not what its annotation says.
     """
-    kind: Any = type(value)
-    names, adapter, arrays = _members(kind)
+    names, adapter = _members(type(value))
     given = tuple([getattr(value, name) for name in names])
-    try:
-        settled = _settled(adapter, given)
-    except ValidationError as error:
-        place, message = _first_fault(error)
-        raise InputError(None, field_name((names[int(place[0])], *place[1:])), message) from error
-    for name, before, content in zip(names, given, settled, strict=True):
+    for name, before, content in zip(names, given, validated(adapter, given, names), strict=True):
         if content is not before:
             object.__setattr__(value, name, content)
-    for name, array, optional in arrays:
-        content = getattr(value, name)
-        if content is not None or not optional:
-            object.__setattr__(value, name, array.of(content, name))
 
 
-def _settled(adapter: TypeAdapter[T], given: Any) -> T:
-    """The content as they are if they can be, which they can wherever they came from JSON."""
+def validated(adapter: TypeAdapter[T], given: tuple[Any, ...], names: Sequence[str]) -> T:
+    """Hold the content of members against a schema of all of them; the first fault becomes the
+    error.
+
+    Content is left as it is if it can be, which it can wherever it came from JSON.
+    """
     try:
         return adapter.validate_python(given)
-    except ValidationError:
-        return adapter.validate_python(plain(given))
-
-
-def validate_python(adapter: TypeAdapter[T], content: Any, member: str) -> T:
-    """Hold the content of a member against a schema; the first fault becomes the error."""
-    try:
-        return _settled(adapter, content)
     except ValidationError as error:
-        place, message = _first_fault(error)
-        raise InputError(None, field_name((member, *place)), message) from error
-
-
-def _first_fault(error: ValidationError) -> tuple[tuple[int | str, ...], str]:
-    place, message = first_fault(error)
-    # Lists and arrays are taken as well, and JSON's sentence is the one that says so.
-    return place, re.sub("valid (tuple|list)$", "valid array", message)
+        # A ValueError of ours is about content that is of the right kind.
+        faults = error.errors(include_url=False, include_context=False, include_input=False)
+        other = {fault["loc"][0] for fault in faults if fault["type"] != "value_error"}
+    try:
+        return adapter.validate_python(
+            tuple([plain(own) if k in other else own for k, own in enumerate(given)])
+        )
+    except ValidationError as error:
+        (number, *place), message = first_fault(error)
+        # Lists and arrays are taken as well, and JSON's sentence is the one that says so.
+        message = re.sub("valid (tuple|list)$", "valid array", message)
+        raise InputError(None, field_name((names[int(number)], *place)), message) from error
 
 
 def plain(content: Any) -> Any:
@@ -95,37 +72,27 @@ def plain(content: Any) -> Any:
     return content
 
 
-def json_content(content: Any, member: str) -> Any:
-    """Free content as it comes back from JSON.
-
-    Raises:
-        InputError: JSON has no text for it.
-    """
+def _through_json(content: Any) -> Any:
     try:
         return json.loads(json.dumps(content, allow_nan=False))
     except (TypeError, ValueError, RecursionError) as error:
-        raise InputError(None, member, f"cannot be written as JSON: {error}") from error
+        raise ValueError(f"cannot be written as JSON: {error}") from error
+
+
+FreeContent = Annotated[dict[str, Any], AfterValidator(_through_json)]
+"""Whatever JSON has a text for, as it comes back from there."""
+
+Ascending = Annotated[tuple[int, ...], AfterValidator(lambda own: tuple(sorted(own)))]
+"""Integers whose order means nothing."""
 
 
 @cache
-def _members(
-    kind: Any,
-) -> tuple[list[str], TypeAdapter[tuple[Any, ...]], list[tuple[str, LeftToNumpy, bool]]]:
-    """The names of a dataclass's members, the schema of their values as one tuple; and the names
-    of those that are arrays, with what makes them and whether they may be None."""
+def _members(kind: Any) -> tuple[list[str], TypeAdapter[tuple[Any, ...]]]:
+    """The names of a dataclass's members, and the schema of their values as one tuple."""
     hints = get_type_hints(kind, include_extras=True)
-    names, arrays = [], []
-    for member in fields(kind):
-        hint = hints[member.name]
-        optional = NoneType in get_args(hint)
-        own = get_args(hint)[0] if optional else hint
-        marks = [mark for mark in getattr(own, "__metadata__", ()) if isinstance(mark, LeftToNumpy)]
-        if marks:
-            arrays.append((member.name, marks[0], optional))
-        else:
-            names.append(member.name)
+    names = [member.name for member in fields(kind)]
     types = tuple(_without_alias(hints[name]) for name in names)
-    return names, TypeAdapter(tuple[types], config=_STRICT), arrays  # type: ignore[valid-type]
+    return names, TypeAdapter(tuple[types], config=_STRICT)  # type: ignore[valid-type]
 
 
 def _without_alias(hint: Any) -> Any:

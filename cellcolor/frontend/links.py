@@ -19,7 +19,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.continuity import link
-from cellcolor.frontend.reach.validity import Verdicts
+from cellcolor.frontend.reach.validity_tests import Verdicts
 from cellcolor.memory import batches, chunks
 
 _ROUNDS = 20  # each at least halves a step that is too long; what is left then is a jump

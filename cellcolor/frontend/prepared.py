@@ -6,6 +6,7 @@ The part is kept in its own frame as well. So the same part can be tested in ano
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 from os import PathLike
 from typing import Any
@@ -16,19 +17,16 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.arm.notes import notes_on_shapes, too_large
-from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, always_touching, pairs_of
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_units
 from cellcolor.frontend.parts.cover import note_on_shell
 from cellcolor.frontend.parts.inspection import note_on_crossings
-from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.rounding import note_on_triangles
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.prepared_arm import PreparedArm, prepare_arm
 from cellcolor.frontend.reach.sheets import in_sheets
-from cellcolor.frontend.reach.validity import Judge
-from cellcolor.frontend.reach.validity_tests import Workplace
+from cellcolor.frontend.reach.validity_tests import Judge, Workplace
 from cellcolor.frontend.scene import Scene
 
 _MOST_POINTS = 20_000_000  # on all mesh edges; each is tested for up to eight branches
@@ -36,32 +34,19 @@ _MOST_ON_AN_EDGE = 500_000  # they are tested together
 
 
 @dataclass(frozen=True, eq=False)
-class PreparedPart:
-    """A part in its own frame, wherever it stands.
-
-    Attributes:
-        surface: the surface to be covered.
-        body: the shape that must not be hit.
-        open: whether that has a border, so that nothing but its faces says which side is outside.
-    """
-
-    surface: Surface
-    body: Shape
-    open: bool
-
-
-@dataclass(frozen=True, eq=False)
 class PreparedScene(Workplace):
     """A scene, ready for questions about configurations.
 
     Attributes:
-        part: in its own frame.
+        own_surface, own_body: the surface to be covered and the shape that must not be hit, in the
+            part's own frame.
         surface: the surface to be covered, in the world.
         notes: likely mistakes in robot and mesh, one sentence each.
     """
 
     scene: Scene
-    part: PreparedPart
+    own_surface: Surface
+    own_body: Shape
     surface: Surface
     notes: tuple[str, ...] = ()
     left_out: frozenset[str] = frozenset()
@@ -75,23 +60,20 @@ class PreparedScene(Workplace):
         """The tests."""
         return Judge(self, self.scene.validity_test, self.left_out)
 
-    def at(self, placement: Placement) -> PreparedScene:
-        """The same scene with the part standing elsewhere; only the part is moved.
+    def asking(self, tests: Collection[str]) -> PreparedScene:
+        """The same scene, of whose tests only these are made, by their names."""
+        others = frozenset(self.judge.reason_names) - frozenset(tests)
+        return replace(self, left_out=self.left_out | others)
 
-        Raises:
-            InputError: the part stands in a link that cannot move, or much too far away.
-        """
-        moved = replace(self, scene=self.scene.varied(placement=placement))
-        return named(_in_place(moved))
-
-    def amid(self, scene: Scene) -> PreparedScene:
+    def at(self, scene: Scene) -> PreparedScene:
         """The same arm and part in a scene that differs in placement, obstacles and ground only.
 
         Raises:
             InputError: an obstacle cannot be used, or the part stands in a link that cannot move,
                 or much too far away.
         """
-        around = _surroundings(scene, self.arm, NEVER)
+        same = (scene.obstacle, scene.ground) == (self.scene.obstacle, self.scene.ground)
+        around = {} if same else _surroundings(scene, self.arm, NEVER)
         return named(_in_place(replace(self, scene=scene, **around)))
 
     def displaced(self) -> list[PreparedScene]:
@@ -105,12 +87,11 @@ class PreparedScene(Workplace):
         tolerance = self.scene.tolerance
         if tolerance is None:
             return []
-        own = self.part.surface.placed(self.scene.placement).vertices
+        own = self.own_surface.placed(self.scene.placement).vertices
         center = (own.min(axis=0) + own.max(axis=0)) / 2
-        exact = replace(self, scene=self.scene.varied(tolerance=None))
         found = []
         for placement in tolerance.displaced(self.scene.placement, center):
-            there = exact.at(placement)
+            there = self.at(self.scene.varied(tolerance=None, placement=placement))
             surface = self.surface.taken_along(self.scene.placement, placement)
             found.append(replace(there, surface=surface))
         return found
@@ -151,17 +132,17 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     if scene.solid_object is not None:
         shape = scene.solid_object.surface(scene.folder, deadline)
     body = Shape("mesh", vertices=shape.vertices, faces=shape.faces)
-    part = PreparedPart(covered, body, bool(shape.mesh.border.any()))
     around = _surroundings(scene, arm, deadline)
+    own = {"own_surface": covered, "own_body": body}
     prepared = _in_place(
-        PreparedScene(arm=arm, target=body, scene=scene, part=part, surface=surface, **around)
+        PreparedScene(arm=arm, target=body, scene=scene, surface=surface, **own, **around)
     )
     notes = arm.robot.warnings + notes_on_shapes(arm.robot) + notes_on_units(scene, reach)
     if covered.faceted:  # a shape is made without
         notes += note_on_crossings(covered.mesh) + note_on_shell(covered)
         notes += note_on_triangles(surface, setup.task.rounding_m)
     if setup.constraints.collision:
-        notes += _notes_on_contacts(prepared, float(lengths.max()))
+        notes += tuple(_notes_on_contacts(prepared, float(lengths.max())))
     return named(replace(prepared, notes=notes), deadline)
 
 
@@ -187,10 +168,10 @@ def _surroundings(scene: Scene, arm: PreparedArm, deadline: Deadline) -> dict[st
 
 def _in_place(prepared: PreparedScene) -> PreparedScene:
     """The part where its scene has it."""
-    scene, part, robot = prepared.scene, prepared.part, prepared.robot
-    surface = part.surface.placed(scene.placement)
+    scene, robot = prepared.scene, prepared.robot
+    surface = prepared.own_surface.placed(scene.placement)
     check_part(surface, scene, prepared.arm.kinematics.reach, robot.base_frame(None)[:3, 3])
-    body = scene.placement.standing(part.body)
+    body = scene.placement.standing(prepared.own_body)
     margin = scene.setup.margins.to_object_m
     fixed = [each for each in robot.bodies if each.joint == 0 and scene.setup.constraints.collision]
     for each in fixed:
@@ -209,43 +190,32 @@ def _prepared_on(scene: Scene, surface: Surface) -> PreparedScene:
     return replace(prepare(scene), surface=surface)
 
 
-def _notes_on_contacts(place: PreparedScene, longest: float) -> tuple[str, ...]:
+def _notes_on_contacts(place: PreparedScene, longest: float) -> Iterator[str]:
     """Likely mistakes in the collision shapes; ``longest`` edge of the mesh in m."""
-    robot, found = place.robot, []
-    margin = place.setup.margins.between_links_m
-    coarse = _too_coarse(robot, place.obstacles, longest)
-    if coarse is not None:
-        found.append(coarse)
-    if robot.has_solids:
-        if not place.tip.body.length:
-            found.append(
-                "a collision shape of the last link or the tool reaches as far as the tool's tip, "
-                "so it touches the object wherever the tip does"
-            )
-        found += [
-            f"{first!r} and {second!r} overlap in all of 100 configurations, so none will be "
-            "valid: are their shapes too large (robot.mesh_collision_of), or may they touch "
-            "(robot.may_touch)?"
-            for first, second in always_touching(robot, pairs_of(robot, margin))
-        ]
-    return tuple(found)
-
-
-def _too_coarse(robot: Robot, obstacles: tuple[Shape, ...], longest: float) -> str | None:
-    """A warning where the longest mesh edge (m) is longer than the tool or an obstacle is wide.
-
-    A vertex says nothing of what is far from it.
-    """
+    robot = place.robot
     widths = [
         (2 * body.radius, f"the body of {body.link!r}")
         for body in robot.bodies
         if body.joint == robot.joints
     ]
-    widths += [(solid.width, f"obstacle[{k}]") for k, solid in enumerate(obstacles)]
+    widths += [(solid.width, f"obstacle[{k}]") for k, solid in enumerate(place.obstacles)]
     width, name = min(widths, default=(longest, ""))
-    if longest <= width:
-        return None
-    return (
-        f"the object's edges are up to {longest:.3g} m long and {name} is {width:.3g} m wide: "
-        "between vertices something can stand unnoticed (max_edge_m, target_vertices)"
-    )
+    if longest > width:  # a vertex says nothing of what is far from it
+        yield (
+            f"the object's edges are up to {longest:.3g} m long and {name} is {width:.3g} m wide: "
+            "between vertices something can stand unnoticed (max_edge_m, target_vertices)"
+        )
+    if not robot.has_solids:
+        return
+    if not place.tip.body.length:
+        yield (
+            "a collision shape of the last link or the tool reaches as far as the tool's tip, so "
+            "it touches the object wherever the tip does"
+        )
+    pairs = pairs_of(robot, place.setup.margins.between_links_m)
+    for first, second in always_touching(robot, pairs):
+        yield (
+            f"{first!r} and {second!r} overlap in all of 100 configurations, so none will be "
+            "valid: are their shapes too large (robot.mesh_collision_of), or may they touch "
+            "(robot.may_touch)?"
+        )

@@ -1,4 +1,4 @@
-"""Restrictions of an arm in a scene, and the build of the scene with one of them less, or more.
+"""Restrictions of an arm in a scene, and the build of the scene with one of them less.
 
 Each :class:`Relaxation` takes one thing out of a prepared scene; :func:`relaxations_of` lists all.
 Whatever was valid before is valid after it, so only candidates that failed for its reason are
@@ -17,14 +17,12 @@ from typing import Any
 
 import numpy as np
 
-from cellcolor.arrays import Mask
-from cellcolor.deadline import Deadline
 from cellcolor.frontend.build import BuildResult, StageClock, colored
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.links import continuous_along, valid_along
 from cellcolor.frontend.prepared import PreparedScene, named
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
-from cellcolor.frontend.reach.validity import Verdicts
+from cellcolor.frontend.reach.validity_tests import Verdicts
 
 Apply = Callable[[PreparedScene, float], PreparedScene]
 """A scene, and by how much the restriction is weakened, infinite if it is left out: the scene with
@@ -293,53 +291,19 @@ def built_asking_less(
     deadline, edges = clock.deadline, prepared.surface.mesh.edges
     codes = [prepared.judge.reason_names.index(reason) for reason in reasons]
     clock.begin("validity at the vertices")
-    verdicts = _judged_there(prepared, before, np.isin(before.reasons, codes), deadline)
+    known, refused = before.verdicts, np.isin(before.reasons, codes)
+    found = prepared.judge(known.configurations[refused], deadline)
+    configurations, reasons = known.configurations.copy(), known.reasons.copy()
+    determinants, tracked = known.determinants.copy(), known.tracked.copy()
+    configurations[refused], reasons[refused] = found.configurations, found.reasons
+    determinants[refused], tracked[:, refused] = found.determinants, found.tracked
+    verdicts = Verdicts(configurations, reasons, determinants, tracked, known.reason_names)
     clock.begin("continuity")
     continuous = before.continuous.copy()
     rows = np.flatnonzero((verdicts.valid[edges].all(axis=1) & ~continuous).any(axis=1))
     continuous[rows] |= continuous_along(prepared, edges[rows], verdicts, deadline)
     clock.begin("validity between vertices")
-    known = before.all_colors.linked, before.verdicts.valid
-    linked = valid_along(prepared, verdicts, continuous, deadline, known)
+    linked = valid_along(
+        prepared, verdicts, continuous, deadline, (before.all_colors.linked, known.valid)
+    )
     return colored(prepared, verdicts, continuous, linked, clock)
-
-
-def built_asking_more(
-    prepared: PreparedScene, before: BuildResult, reasons: Collection[str], clock: StageClock
-) -> BuildResult:
-    """The build of a scene that asks for more: of what was valid only its new tests are made.
-
-    A candidate that was refused before keeps that reason.
-
-    Args:
-        prepared: the scene that asks for more: whatever is valid was valid before.
-        before: of the scene that asks for less. Its arm's solutions have names.
-        reasons: the tests that ask for more.
-    """
-    deadline, edges = clock.deadline, prepared.surface.mesh.edges
-    strict = replace(prepared, left_out=frozenset(prepared.judge.reason_names) - set(reasons))
-    clock.begin("validity at the vertices")
-    verdicts = _judged_there(strict, before, before.verdicts.valid, deadline)
-    clock.begin("continuity")
-    continuous = before.continuous & verdicts.valid[edges].all(axis=1)
-    if "joint limits" in reasons:
-        rows = np.flatnonzero(continuous.any(axis=1))
-        continuous[rows] &= continuous_along(prepared, edges[rows], verdicts, deadline)
-    clock.begin("validity between vertices")
-    left = valid_along(strict, verdicts, continuous & before.all_colors.linked, deadline)
-    # Near a new border of the domain all tests are made at closer points.
-    known = before.all_colors.linked, before.verdicts.valid
-    linked = valid_along(prepared, verdicts, left, deadline, known)
-    return colored(prepared, verdicts, continuous, linked, clock)
-
-
-def _judged_there(
-    prepared: PreparedScene, before: BuildResult, where: Mask, deadline: Deadline
-) -> Verdicts:
-    """The verdicts on all candidates, those of some (n, branches) made anew."""
-    known, new = before.verdicts, prepared.judge(before.configurations[where], deadline)
-    configurations, reasons = known.configurations.copy(), known.reasons.copy()
-    determinants, tracked = known.determinants.copy(), known.tracked.copy()
-    configurations[where], reasons[where] = new.configurations, new.reasons
-    determinants[where], tracked[:, where] = new.determinants, new.tracked
-    return Verdicts(configurations, reasons, determinants, tracked, known.reason_names)

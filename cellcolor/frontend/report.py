@@ -11,20 +11,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import igl
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Mask, unit
+from cellcolor.arrays import Array, unit
 from cellcolor.data.wording import count
-from cellcolor.frontend.arm.body import Shape
-from cellcolor.frontend.arm.kinematics import frames_along
-from cellcolor.frontend.arm.notes import StandInReport, measured
-from cellcolor.frontend.contact.engine import meet
 from cellcolor.frontend.parts.cover import spread
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.reach.limit_colors import LimitColors
 from cellcolor.frontend.reach.slivers import SliverReport
 from cellcolor.frontend.reach.validity_tests import STANDARD_TESTS
@@ -63,7 +58,7 @@ class BuildReport:
             passed the most tests.
         cracks: number of mesh edges with a crack.
         notes: likely mistakes in robot and mesh, one sentence each.
-        stand_ins: what collides in the place of the meshes of links, and how far off it is.
+        stand_ins: what collides in the place of the meshes of links, in words.
         slivers: what the sliver policy did, None without one.
         injectivity: of an arm whose solutions have no names, what was found; None for others.
         rounding: over what the normals of a mesh are rounded; None for a shape that has its own.
@@ -82,7 +77,7 @@ class BuildReport:
     cracks: int
     seconds: Mapping[str, float]
     notes: tuple[str, ...]
-    stand_ins: tuple[StandInReport, ...] = ()
+    stand_ins: tuple[str, ...] = ()
     slivers: SliverReport | None = None
     injectivity: str | None = None
     rounding: str | None = None
@@ -91,8 +86,7 @@ class BuildReport:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Likely mistakes, one sentence each."""
-        hulls = (stand_in.warning for stand_in in self.stand_ins)
-        return self.survey.warnings + self.notes + tuple(text for text in hulls if text)
+        return self.survey.warnings + self.notes
 
     @property
     def nothing_covered(self) -> str | None:
@@ -167,9 +161,15 @@ def report_on(built: BuildResult) -> BuildReport:
     prepared, verdicts, limits = built.prepared, built.verdicts, built.limits
     surface, names = prepared.surface, verdicts.reason_names
     areas, reached = surface.mesh.vertex_areas, verdicts.valid.any(axis=1)
+    coloring, colors = built.coloring, []
+    for color, (name, branch) in enumerate(zip(coloring.names, coloring.branch, strict=True)):
+        own = coloring.node_color[:, branch] == color
+        area = float(areas[own].sum())
+        colors.append(ColorReport(name, built.branches[branch], int(own.sum()), area))
     # Codes are in the order of the tests.
     farthest = verdicts.reasons.max(axis=1)[~reached]
     remarks = prepared.arm.kinematics.remarks(surface.vertices, -surface.normals)
+    hulls = tuple(each.warning for each in prepared.robot.stand_ins if each.warning)
     task = prepared.setup.task
     key = "contact_radius_m" if task.edge_radius_m is None else "edge_radius_m"
     rounding = f"rounded over {1e3 * task.rounding_m:g} mm (task.{key})"
@@ -181,11 +181,11 @@ def report_on(built: BuildResult) -> BuildReport:
         reachable_area_m2=float(areas[reached].sum()),
         candidates=_count_reasons(verdicts.reasons.ravel(), names),
         unreachable=_count_reasons(farthest, names, 1),
-        colors=_color_reports(surface, built.coloring, built.branches),
-        cracks=len(built.coloring.cracks),
+        colors=tuple(colors),
+        cracks=len(coloring.cracks),
         seconds=built.seconds,
-        notes=prepared.notes + remarks,
-        stand_ins=tuple(map(measured, prepared.robot.stand_ins)),
+        notes=prepared.notes + remarks + hulls,
+        stand_ins=tuple(map(str, prepared.robot.stand_ins)),
         slivers=built.slivers_report,
         injectivity=None if prepared.arm.named else _INJECTIVE,
         rounding=rounding if surface.faceted else None,
@@ -201,23 +201,6 @@ def _limits_in_words(limits: LimitColors) -> str:
     return text
 
 
-def _color_reports(
-    surface: Surface, coloring: Coloring, branch_names: tuple[str, ...]
-) -> tuple[ColorReport, ...]:
-    """What each color reaches."""
-    vertex, branch = np.nonzero(coloring.node_color >= 0)
-    color = coloring.node_color[vertex, branch]
-    sizes = np.bincount(color, minlength=len(coloring.names)).tolist()
-    areas = surface.mesh.vertex_areas[vertex]
-    domains = np.bincount(color, areas, minlength=len(coloring.names)).tolist()
-    return tuple(
-        ColorReport(name, branch_names[number], size, area)
-        for name, number, size, area in zip(
-            coloring.names, coloring.branch, sizes, domains, strict=True
-        )
-    )
-
-
 def _count_reasons(
     reasons: NDArray[np.uint8], names: tuple[str, ...], first: int = 0
 ) -> dict[str, int]:
@@ -227,9 +210,8 @@ def _count_reasons(
 
 
 _POINTS = 500  # of the surface that are looked at
-_SHORT = 1e-3  # by this part of its length a line of sight ends before the surface
+_SHORT = 1e-3  # of a line of sight; what is first on it so near its end is its own point
 _DOWN = 0.5  # the cosine between a normal that faces down and gravity
-_THIN = 1e-7  # m; radius of a line of sight
 
 
 @dataclass(frozen=True)
@@ -278,7 +260,8 @@ def survey_of(prepared: PreparedScene) -> Survey:
     base = prepared.robot.base_frame(None)[:3, 3]
     found = survey(prepared.surface, prepared.arm.kinematics.viewpoints, base)
     gravity = np.array(prepared.setup.task.gravity_m_per_s2)
-    if not prepared.part.open or not gravity.any():
+    solid = TriangleMesh(prepared.own_body.vertices, prepared.own_body.faces)
+    if not solid.border.any() or not gravity.any():
         return found
     mesh = prepared.surface.mesh
     down = mesh.triangle_normals @ unit(gravity) > _DOWN
@@ -293,38 +276,27 @@ def survey(surface: Surface, viewpoints: Array, base: Array) -> Survey:
         base: (3,) where the robot's base stands.
     """
     vertices, faces, mesh = surface.vertices, surface.faces, surface.mesh
-    nearest = trimesh.triangles.closest_point(vertices[faces], np.tile(base, (len(faces), 1)))
+    squared = igl.point_mesh_squared_distance(base[None], vertices, faces)[0]
     return Survey(
         tuple((vertices.max(axis=0) - vertices.min(axis=0)).tolist()),
-        float(np.linalg.norm(nearest - base, axis=1).min()),
+        float(np.sqrt(squared[0])),
         _from_behind(mesh, viewpoints) if mesh.border.any() else 0.0,
     )
 
 
 def _from_behind(mesh: TriangleMesh, viewpoints: Array) -> float:
     """The share of the visible points that are seen only from behind."""
-    vertices, faces = mesh.points, mesh.corners
     points, face = spread(mesh, _POINTS)
-    shape = Shape("mesh", vertices=vertices, faces=faces)
-    normals = mesh.area_vectors[face]
+    tree = igl.AABB()
+    tree.init(mesh.points, mesh.corners)
     seen, front = np.zeros((2, len(points)), dtype=bool)
     for eye in viewpoints:
-        visible = _visible(shape, eye, points)
+        sights = points - eye
+        first = tree.intersect_ray_first(mesh.points, mesh.corners, points - sights, sights)[1]
+        visible = first > 1 - _SHORT
         seen |= visible
-        front |= visible & (np.einsum("ij,ij->i", normals, eye - points) > 0)
+        front |= visible & (np.einsum("ij,ij->i", mesh.area_vectors[face], sights) < 0)
     return float((seen & ~front).sum() / max(seen.sum(), 1))
-
-
-def _visible(shape: Shape, eye: Array, points: Array) -> Mask:
-    """Whether nothing of the shape lies before points (k, 3) of it, (k,)."""
-    sights = (1 - _SHORT) * (points - eye)
-    turns, middles = frames_along(unit(sights)), eye + sights / 2
-    visible = np.zeros(len(points), dtype=bool)
-    for row, length in enumerate(np.linalg.norm(sights, axis=1).tolist()):
-        if length:
-            line = Shape("capsule", (_THIN, length), rotation=turns[row], origin=middles[row])
-            visible[row] = not meet(shape, line)
-    return visible
 
 
 def _meters(length: float) -> str:

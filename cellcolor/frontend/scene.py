@@ -31,8 +31,7 @@ from cellcolor.frontend.parts.mesh import ArraysObject
 from cellcolor.frontend.parts.placement import Placement, Tolerance, rotation_from_rpy
 from cellcolor.frontend.parts.rounding import rounded
 from cellcolor.frontend.parts.surface import PARTS, Part, Surface
-from cellcolor.frontend.reach.validity import STANDARD_REASONS
-from cellcolor.frontend.reach.validity_tests import VALIDITY_TESTS, ValidityTest
+from cellcolor.frontend.reach.validity_tests import STANDARD_REASONS, VALIDITY_TESTS, ValidityTest
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.tables import Coordinate, FileTable, Table, Vector, of_kind
 
@@ -133,16 +132,6 @@ class Scene(FileTable):
         return (setup.file.relative_to(self.folder) if within else setup.file).as_posix()
 
     @model_validator(mode="after")
-    def _faces_as_numbered(self) -> Self:
-        """A list of faces is one of the file's: what changes them is refused beside it."""
-        if self.cover is not None and self.cover.faces_file is not None:
-            for key in ("max_edge_m", "repair"):
-                if getattr(self.object, key, None):
-                    message = f"cannot be combined with {key}, which numbers the faces anew"
-                    raise InputError(None, "cover.faces_file", message)
-        return self
-
-    @model_validator(mode="after")
     def _tests_of_other_names(self) -> Self:
         for number, test in enumerate(self.validity_test):
             if test.name in STANDARD_REASONS:
@@ -165,7 +154,7 @@ class Scene(FileTable):
         """
         surface = self.object.surface(self.folder, deadline)
         if self.cover is not None:
-            surface = self.cover.patch(surface, self.folder, deadline)
+            surface = self.cover.patch(surface, deadline)
         if surface.faceted:
             with naming(self.setup.file):
                 surface = rounded(surface, self.setup.task.rounding_m, deadline)

@@ -227,21 +227,27 @@ class Slivers(Table):
 class Motion(Table):
     """How the tool covers a segment, and how the arm moves; only planning a motion asks for it.
 
-    ``tool_radius_m`` is that of the tool's footprint, ``spacing_m`` the distance between
-    neighboring passes. Where two segments meet, the passes of both go beyond their border, so that
-    they overlap by ``overlap_m``. Within 10 mm of a contact the tool comes and goes at
-    ``approach_speed_m_per_s`` at most, without it at ``speed_m_per_s``. It retracts by
-    ``retract_m`` along the normal; between segments the arm keeps ``clearance_m`` from everything.
-    A URDF has velocities, which ``joint_velocities_rad_per_s`` may lower, but no accelerations.
-    A tool that stands off goes straight on by ``lead_m`` before and after each stroke.
-    ``transfer_speed_m_per_s`` caps the tip's speed between strokes. With ``even_feed`` a stroke is
-    slowed down as a whole to a feed that it can keep; ``least_feed`` is the share of
-    ``speed_m_per_s`` below which the judge finds a fault.
-    ``joint_jerks_rad_per_s3`` is for judging: trajectories may not change accelerations faster.
-    Planned ones are not made to keep it.
-    Lists of joints go from base to tool, with m in the place of rad for prismatic ones;
-    ``home_rad`` is where the arm begins and ends, nowhere in particular without it. ``"free"`` asks
-    for a free position, which is found.
+    Lists of joints go from base to tool, with m in the place of rad for prismatic ones.
+
+    Attributes:
+        tool_radius_m: of the tool's footprint.
+        spacing_m: between neighboring passes.
+        overlap_m: by how much the passes of two segments that meet overlap.
+        speed_m_per_s: of the tool on the surface; slower where joints limit it.
+        joint_velocities_rad_per_s: lower limits than the URDF's.
+        joint_accelerations_rad_per_s2: limits, of which a URDF has none.
+        joint_jerks_rad_per_s3: for judging: trajectories may not change accelerations faster.
+            Planned ones are not made to keep it.
+        lead_m: how far a tool that stands off goes straight on before and after each stroke.
+        approach_speed_m_per_s: of the tool within 10 mm of a contact at most; ``speed_m_per_s``
+            without it.
+        transfer_speed_m_per_s: of the tip between strokes at most.
+        even_feed: slow a stroke down as a whole to a feed that it can keep.
+        least_feed: the share of ``speed_m_per_s`` below which the judge finds a fault.
+        retract_m: along the normal, before a move to another stroke.
+        clearance_m: distance from everything between strokes.
+        home_rad: where the arm begins and ends, nowhere in particular without it; ``free`` asks for
+            a free position, which is found.
     """
 
     NEWER = ("lead_m", "transfer_speed_m_per_s", "even_feed", "least_feed")

@@ -78,7 +78,7 @@ class TriangleMesh:
     @cached_property
     def pairs(self) -> tuple[Index, Index]:
         """The edges (p,) that two triangles have, and the two sides (p, 2) that are each."""
-        order, first = self._edges_and_sides[2], self._first_side
+        order, first = self._edges_and_sides[2], np.cumsum(self.triangles_at) - self.triangles_at
         two = np.flatnonzero(self.triangles_at == 2)
         return _fixed(two), _fixed(np.column_stack([order[first[two]], order[first[two] + 1]]))
 
@@ -94,10 +94,6 @@ class TriangleMesh:
     def beyond(self) -> Index:
         """(m, 3) the triangle beyond each side; -1 unless two have it."""
         return self.across // 3
-
-    @cached_property
-    def _first_side(self) -> Index:
-        return _fixed(np.cumsum(self.triangles_at) - self.triangles_at)
 
     @property
     def ascending(self) -> Mask:
@@ -245,7 +241,11 @@ def directed_edges(faces: NDArray[np.int64], vertex_count: int) -> dict[tuple[in
     """
     if len(faces) == 0:
         raise InputError(None, "faces", "the surface is empty")
-    _check_indices(faces, vertex_count)
+    check_corners(faces, vertex_count)
+    repeated = np.flatnonzero(repeated_corners(faces))
+    if len(repeated):
+        face = repeated[0]
+        raise InputError(None, f"faces[{face}]", f"repeats a vertex: {faces[face].tolist()}")
     # Three directed edges a face, and what stands on their left.
     start, end, third = faces.ravel(), faces[:, [1, 2, 0]].ravel(), faces[:, [2, 0, 1]].ravel()
     key = start * vertex_count + end
@@ -263,19 +263,23 @@ def directed_edges(faces: NDArray[np.int64], vertex_count: int) -> dict[tuple[in
     return dict(zip(pairs, third.tolist(), strict=True))
 
 
-def _check_indices(faces: NDArray[np.int64], vertex_count: int) -> None:
+def check_corners(faces: Index, vertex_count: int) -> None:
+    """Refuse a face that has a vertex which is not there.
+
+    Raises:
+        InputError: names the corner.
+    """
     wrong = np.argwhere((faces < 0) | (faces >= vertex_count))
     if len(wrong):
         face, corner = wrong[0]
-        raise InputError(
-            None, f"faces[{face}][{corner}]", f"there is no vertex {faces[face, corner]}"
-        )
-    repeated = np.flatnonzero(
-        (faces[:, 0] == faces[:, 1]) | (faces[:, 1] == faces[:, 2]) | (faces[:, 2] == faces[:, 0])
-    )
-    if len(repeated):
-        face = repeated[0]
-        raise InputError(None, f"faces[{face}]", f"repeats a vertex: {faces[face].tolist()}")
+        message = f"there is no vertex {faces[face, corner]}"
+        raise InputError(None, f"faces[{face}][{corner}]", message)
+
+
+def repeated_corners(faces: Index) -> Mask:
+    """The faces (m,) with a vertex that is two of their corners."""
+    a, b, c = faces.T
+    return np.asarray((a == b) | (b == c) | (c == a))
 
 
 def _refuse_edge(faces: Index, first: int, second: int) -> None:
@@ -303,23 +307,21 @@ def _check_fans(start: Index, following: Index, vertex_count: int) -> None:
     """
     corners = np.arange(len(start))
     degree = np.bincount(start, minlength=vertex_count)
-    ends = np.flatnonzero(following < 0)
-    fans = np.bincount(start[ends], minlength=vertex_count)
-    # Open fans are closed, so that a fan is a cycle of corners; of several at a vertex some stay
-    # open, but then they are too many already.
-    first = np.full(vertex_count, -1)
+    # The walk about a vertex begins with any corner, or with the end of an open fan.
+    first = np.zeros(vertex_count, dtype=np.int64)
+    first[start] = corners
     begun = np.ones(len(start), dtype=bool)
     begun[following[following >= 0]] = False
     first[start[begun]] = corners[begun]
-    cycle = following.copy()
-    cycle[ends] = first[start[ends]]
-    # Each corner learns the smallest one of its cycle, twice as many steps ahead every time.
-    smallest, ahead = corners, cycle
-    for _ in range(int(degree.max()).bit_length()):
-        smallest = np.minimum(smallest, smallest[ahead])
-        ahead = ahead[ahead]
-    cycles = np.bincount(start[smallest == corners], minlength=vertex_count)
-    bad = np.flatnonzero((np.maximum(fans, cycles) != 1) | (degree == 0))
+    walked = np.zeros(vertex_count, dtype=np.int64)
+    walking = np.flatnonzero(degree)
+    at = first[walking]
+    while len(walking):
+        walked[walking] += 1
+        at = following[at]
+        on = (at >= 0) & (at != first[walking])
+        walking, at = walking[on], at[on]
+    bad = np.flatnonzero((walked != degree) | (degree == 0))
     if not len(bad):
         return
     vertex = int(bad[0])

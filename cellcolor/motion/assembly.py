@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, stretches
 from cellcolor.data.trajectory import ExtraLiftOff, RepeatedStretch, Trajectory
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.kinematics import forward
@@ -62,13 +62,6 @@ def retraced(strokes: Sequence[Array], spacing: float) -> list[Mask]:
     marked[passes.ravel()] = True
     parts = np.split(marked, np.cumsum([len(own) for own in thin])[:-1])
     return [np.repeat(part, every)[: len(own)] for part, own in zip(parts, strokes, strict=True)]
-
-
-def stretches(marked: Mask) -> list[tuple[int, int]]:
-    """First and last point of each run of at least two marked points."""
-    ends = np.diff(np.concatenate([[0], marked.astype(np.int8), [0]]))
-    first, after = np.flatnonzero(ends > 0), np.flatnonzero(ends < 0)
-    return [(a, b - 1) for a, b in zip(first.tolist(), after.tolist(), strict=True) if b - a > 1]
 
 
 _NEAR = 0.01  # m, of the tip's way to and from contact, on which it keeps to the approach speed
@@ -133,8 +126,9 @@ def assembled(
             extra.append(ExtraLiftOff(last, stroke.segment, why.reason, why.text, (x, y, z)))
         begun = _add_stroke(rows, robot, stroke, motion, speeds)
         repeated += [
-            RepeatedStretch(begun + a, begun + b, "beside another pass")
-            for a, b in stretches(marked[number])
+            RepeatedStretch(begun + first, begun + after - 1, "beside another pass")
+            for first, after in stretches(marked[number])
+            if after - first > 1
         ]
         last_of[stroke.segment] = begun + len(stroke) - 1
     times, joints, points, normals, segment = map(np.concatenate, zip(*rows.parts, strict=True))

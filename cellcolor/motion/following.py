@@ -1,7 +1,7 @@
 """The arm along samples of a tool path: one branch, its angles unwound, every sample judged.
 
 Samples are evenly spaced, at most 1 mm and 1 degree apart. Where a joint is fast, beside a
-singularity, :mod:`~cellcolor.motion.courses` puts more between. The degree is measured with the
+singularity, :mod:`~cellcolor.motion.segment` puts more between. The degree is measured with the
 path's own normals. With those of the surface, which the samples get, neighbors beside a sharp edge
 can be a little farther apart: 1.13 degrees at most on the parts of docs/parts.md. The judge of
 trajectories tests between them.
@@ -9,6 +9,7 @@ trajectories tests between them.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -51,8 +52,8 @@ class Samples:
         return len(self.points)
 
 
-def with_normals_of(samples: Samples, mesh: TriangleMesh, normals: Array) -> Samples:
-    """The same points with the normals that a surface has there.
+def normals_at(mesh: TriangleMesh, normals: Array, faces: Index, points: Array) -> Array:
+    """The unit normals (k, 3) that a surface has at points (k, 3) of its triangles (k,).
 
     Those of a path are interpolated from point to point. Where a normal turns quickly, as beside a
     sharp edge, they are a degree or more off those of the triangles.
@@ -60,10 +61,9 @@ def with_normals_of(samples: Samples, mesh: TriangleMesh, normals: Array) -> Sam
     Args:
         normals: (n, 3) outward, at its vertices; of any length, which counts between them.
     """
-    shares = mesh.shares(samples.faces, samples.points)
-    turned = np.einsum("ki,kij->kj", shares, normals[mesh.corners[samples.faces]])
-    turned /= np.linalg.norm(turned, axis=1, keepdims=True)
-    return Samples(samples.points, turned, samples.faces)
+    shares = mesh.shares(faces, points)
+    turned = np.einsum("ki,kij->kj", shares, normals[mesh.corners[faces]])
+    return np.asarray(turned / np.linalg.norm(turned, axis=1, keepdims=True))
 
 
 def even_places(path: ToolPath, corners: Index | None = None) -> Array:
@@ -86,17 +86,13 @@ def even_places(path: ToolPath, corners: Index | None = None) -> Array:
     return np.union1d(even[needed], at)
 
 
-def sampled(path: ToolPath, places: Array | None = None) -> Samples:
-    """A path at places on it; without them at the even ones."""
-    places = even_places(path) if places is None else places
+def sampled(path: ToolPath, places: Array) -> tuple[Array, Index]:
+    """The points (k, 3) at places on a path, and the triangle (k,) that each lies in."""
     share = _shares(path)
     passed = np.concatenate([[0.0], np.cumsum(share)])
     step = np.clip(np.searchsorted(passed, places, side="right") - 1, 0, len(share) - 1)
     part = ((places - passed[step]) / np.where(share[step] > 0, share[step], 1.0))[:, None]
-    points = (1 - part) * path.points[step] + part * path.points[step + 1]
-    normals = (1 - part) * path.normals[step] + part * path.normals[step + 1]
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    return Samples(points, normals, path.faces[step])
+    return (1 - part) * path.points[step] + part * path.points[step + 1], path.faces[step]
 
 
 def _shares(path: ToolPath) -> Array:
@@ -179,16 +175,22 @@ def bowed(robot: Robot, joints: Array) -> Mask:
     return np.asarray((off > too_far) | (angles_between(middle.tool_axis, axis) > _BOW_ANGLE))
 
 
-def off_way(robot: Robot, joints: Array, samples: Samples) -> Mask:
-    """Which configurations (k, joints) have tip or axis off the sample (k) that they are meant for.
+def off_way(
+    robot: Robot, joints: Array, points: Array, normals_of: Callable[[Array], Array]
+) -> Mask:
+    """Which configurations (k, joints) have tip or axis off the points (k, 3) they are meant for.
 
-    Of the tip only the distance along the normal counts.
+    Of the tip only the distance along the normal counts. The axis is compared with the normal where
+    the tip is: beside a sharp edge a normal turns by degrees on a tenth of a millimeter.
+
+    Args:
+        normals_of: gives unit normals of the surface at points (k, 3) near these.
     """
     poses = forward(robot, joints)
-    lifted = np.einsum("ij,ij->i", poses.tip - samples.points, samples.normals)
-    off = np.abs(lifted) > _OFF
+    normals = normals_of(poses.tip)
+    off = np.abs(np.einsum("ij,ij->i", poses.tip - points, normals)) > _OFF
     if robot.task.direction:
-        off |= angles_between(poses.tool_axis, -samples.normals) > _TILT
+        off |= angles_between(poses.tool_axis, -normals) > _TILT
     return np.asarray(off)
 
 

@@ -47,17 +47,13 @@ def ordered(
 
     def best_of(order: Sequence[int]) -> tuple[float, list[int]]:
         """The time of the quickest choice of a way for each stroke of an order, and the ways."""
-        total, came = from_home[rows[order[0]]], []
-        for before, after in pairwise(order):
-            whole = total[:, None] + between[np.ix_(rows[before], rows[after])]
-            came.append(whole.argmin(axis=0))
-            total = whole.min(axis=0)
-        total = total + to_home[rows[order[-1]]]
-        at = [int(total.argmin())]
-        for back in reversed(came):
-            at.append(int(back[at[-1]]))
-        chosen = [int(rows[stroke][way]) for stroke, way in zip(order, reversed(at), strict=True)]
-        return float(total.min()), chosen
+        own = [rows[stroke] for stroke in order]
+        moves = [between[np.ix_(before, after)] for before, after in pairwise(own)]
+        aside = [np.zeros(len(some)) for some in own]
+        aside[0] += from_home[own[0]]
+        aside[-1] += to_home[own[-1]]
+        seconds, chosen = _quickest(moves, aside)
+        return seconds, [int(some[at]) for some, at in zip(own, chosen, strict=True)]
 
     if len(strokes) <= _ALL_ORDERS:
         every = [list(order) for order in permutations(range(len(strokes)))]
@@ -152,7 +148,7 @@ def chosen_turns(
         for before, after in zip(ends[:-1], starts[1:], strict=True)
     ]
     known: set[tuple[int, int, int]] = set()
-    best = _quickest(moves, aside)
+    best = _quickest(moves, aside)[1]
     for _ in range(_CHECKS * len(moves)):
         asked = next(
             (
@@ -169,14 +165,14 @@ def chosen_turns(
         longer = detour(ends[layer][one], starts[layer + 1][other])
         if longer > 0:
             moves[layer][one, other] += longer
-            best = _quickest(moves, aside)
+            best = _quickest(moves, aside)[1]
     else:  # what was not asked about is not to look better than what was
         for layer, move in enumerate(moves):
             unknown = np.ones(move.shape, dtype=bool)
             asked_of = [(one, other) for at, one, other in known if at == layer]
             unknown[tuple(np.array(asked_of, dtype=np.int64).reshape(-1, 2).T)] = False
             move[unknown] += _UNKNOWN
-        best = _quickest(moves, aside)
+        best = _quickest(moves, aside)[1]
     of_visits = best if home is None else best[1:-1]
     return [own[at] for own, at in zip(circles, of_visits, strict=True)]
 
@@ -196,8 +192,8 @@ def _choices(visit: Visit, space: JointSpace, middle: Array) -> Index:
     return np.array(list(product(*near)), dtype=np.int64)
 
 
-def _quickest(moves: Sequence[Array], aside: Sequence[Array]) -> list[int]:
-    """One choice of each layer, with the least time in all."""
+def _quickest(moves: Sequence[Array], aside: Sequence[Array]) -> tuple[float, list[int]]:
+    """The least time in all, and the choice of each layer that takes it."""
     total, came = aside[0], []
     for move, own in zip(moves, aside[1:], strict=True):
         whole = total[:, None] + move
@@ -206,4 +202,4 @@ def _quickest(moves: Sequence[Array], aside: Sequence[Array]) -> list[int]:
     best = [int(total.argmin())]
     for back in reversed(came):
         best.append(int(back[best[-1]]))
-    return best[::-1]
+    return float(total.min()), best[::-1]

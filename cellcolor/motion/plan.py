@@ -18,18 +18,14 @@ from cellcolor.motion.following import joint_space
 from cellcolor.motion.limits import motion_of, speeds_of
 from cellcolor.motion.order import ordered
 from cellcolor.motion.segment import Ground, strokes_of
-from cellcolor.motion.small_triangles import SmallTriangles, corner_states
+from cellcolor.motion.small_triangles import corner_states
 from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.transfers import Transfers
 from cellcolor.motion.ways import Transfer
 from cellcolor.painting.paint import Painted
 from cellcolor.tool_paths.cover import Covered, check_spacing
-from cellcolor.tool_paths.measures import PathMeasures
 from cellcolor.tool_paths.region import Segments
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN
-
-OnPaths = Callable[[ToolPaths, tuple[PathMeasures, ...]], None]
-"""Given tool paths, and the measures of each."""
 
 
 @dataclass(frozen=True)
@@ -38,14 +34,12 @@ class MotionPlan:
 
     Attributes:
         paths: the tool paths that the trajectory follows.
-        measures: of each of these paths.
         trajectory: the arm on them.
         cut_off: the colors of the strokes that no planned moves join to the home position, or
             to most of the other strokes without one.
     """
 
     paths: ToolPaths
-    measures: tuple[PathMeasures, ...]
     trajectory: Trajectory
     cut_off: tuple[int, ...]
 
@@ -58,7 +52,7 @@ def plan_motion(
     seed: int = 0,
     deadline: Deadline = NEVER,
     progress: Progress | None = None,
-    on_paths: OnPaths | None = None,
+    on_paths: Callable[[ToolPaths], None] | None = None,
 ) -> MotionPlan:
     """Plan a motion that covers a painted surface (docs/motion.md).
 
@@ -84,8 +78,7 @@ def plan_motion(
     normals = painted.interpolated(built.prepared.surface.normals)
     segments = Segments(surface, segment_of, color_of, normals)
     with clock.timed("corners of small triangles"):
-        small = SmallTriangles.of(surface.mesh, normals, segment_of)
-        states = corner_states(prepared, small, own_branch, deadline)
+        states = corner_states(prepared, segments, own_branch, deadline)
     ground = Ground(prepared, segments, states, pattern, motion, deadline)
     with clock.timed("tool paths"):
         found = [
@@ -93,7 +86,6 @@ def plan_motion(
             for segment in np.unique(segment_of[segment_of >= 0]).tolist()
         ]
     covered = [laid for laid, _ in found]
-    measures = [one for laid in covered for one in laid.measures]
     paths = ToolPaths(
         surface.name,
         pattern,
@@ -103,7 +95,7 @@ def plan_motion(
         surface.sha256,
     )
     if on_paths is not None:
-        on_paths(paths, tuple(measures))
+        on_paths(paths)
     strokes = [stroke for _, own in found for stroke in own]
     left_out = _left_out(covered)
     if not strokes:
@@ -123,7 +115,6 @@ def plan_motion(
     )
     return MotionPlan(
         paths,
-        tuple(measures),
         trajectory,
         _cut_off(strokes, transfers, color_of, planner.home is not None),
     )

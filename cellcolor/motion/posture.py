@@ -14,7 +14,7 @@ from cellcolor.decomposition import Decomposition
 from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult
-from cellcolor.frontend.reach.validity import Verdicts
+from cellcolor.frontend.reach.validity_tests import Verdicts
 from cellcolor.motion.following import joint_space
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.preferring import cost_of, preferred
@@ -104,15 +104,19 @@ def _from_home(built: BuildResult, home: Array) -> Array:
     return np.asarray(np.nan_to_num(np.array(found).reshape(len(found), -1).T))
 
 
-def color_costs(robot: Robot, candidates: Verdicts) -> Array:
+def color_costs(robot: Robot, candidates: Verdicts, greatest: float | None = None) -> Array:
     """How badly conditioned the arm is in each candidate (n, branches), from 0, best, to 1.
 
-    Two things count, and the worse of them: the task determinant as a share of the greatest one on
-    this surface, and :func:`joint_room`. Candidates that are not valid cost 1.
+    Two things count, and the worse of them: the task determinant as a share of the greatest one,
+    and :func:`joint_room`. Candidates that are not valid cost 1.
+
+    Args:
+        greatest: the greatest task determinant, m³; None for the greatest one of these candidates.
     """
     valid = candidates.valid
     determinants = np.where(valid, candidates.determinants, 0.0)
-    greatest = float(determinants.max(initial=0.0))
+    if greatest is None:
+        greatest = float(determinants.max(initial=0.0))
     good = determinants / greatest if greatest else determinants
     joints = np.where(valid[:, :, None], candidates.configurations, 0.0)
     return np.asarray(np.where(valid, 1.0 - np.minimum(good, joint_room(robot, joints)), 1.0))

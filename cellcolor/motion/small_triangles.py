@@ -14,49 +14,15 @@ from scipy.spatial import cKDTree
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.mesh.dividing import small_triangles, unit_everywhere
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.following import joint_space
 from cellcolor.tool_paths.refused import Codes
+from cellcolor.tool_paths.region import Segments
 
 JUMP = "discontinuity"
 """The reason where configurations are valid and the branch jumps between them."""
-
-
-@dataclass(frozen=True)
-class SmallTriangles:
-    """The small triangles of a painted mesh of k edges and m triangles.
-
-    Attributes:
-        whole: the painted mesh.
-        points: (p, 3) vertices, middles of edges, centroids, m.
-        normals: (p, 3) outward unit normals there.
-        corners: (6 m, 3) which points each small triangle has; the mesh's vertex first.
-        side: (6 m,) the edge of the mesh that it touches.
-        segment: (6 m,) -1 where the vertex has no color.
-    """
-
-    whole: TriangleMesh
-    points: Array
-    normals: Array
-    corners: Index
-    side: Index
-    segment: Index
-
-    @classmethod
-    def of(cls, whole: TriangleMesh, normals: Array, segment_of: Index) -> SmallTriangles:
-        """Those of a mesh with outward normals (n, 3) and the segment (n,) of each vertex."""
-        fine, side = small_triangles(whole)
-        return cls(
-            whole,
-            fine.points,
-            unit_everywhere(whole, normals),
-            fine.corners,
-            side,
-            segment_of[fine.corners[:, 0]],
-        )
 
 
 @dataclass(frozen=True)
@@ -64,17 +30,25 @@ class CornerStates:
     """What the arm can do at the corners of small triangles, in the color of their segment.
 
     Attributes:
-        small: the small triangles.
+        whole: the painted mesh, of m triangles.
+        fine: the 6 m small ones, on vertices, middles of edges and centroids; of each a vertex of
+            the painted mesh comes first.
+        normals: outward unit normals at the points of the fine mesh.
+        side: (6 m,) the edge of the painted mesh that each touches.
+        segment: (6 m,) -1 where the vertex has no color.
         joints: (6 m, 3, joints) in rad or m, those of the second and the third corner unwound
             from the first; NaN without solution or segment.
         reasons: (6 m, 3) codes of the judge: the first test that each corner fails.
         wound: (6 m,) whether the angles do not return after one turn: the branch jumps inside.
     """
 
-    small: SmallTriangles
+    whole: TriangleMesh
+    fine: TriangleMesh
+    normals: Array
+    side: Index
+    segment: Index
     joints: Array
     reasons: NDArray[np.uint8]
-    space: JointSpace
     wound: Mask
 
     @property
@@ -84,34 +58,35 @@ class CornerStates:
 
 
 def corner_states(
-    prepared: PreparedScene, small: SmallTriangles, branch_of: Index, deadline: Deadline = NEVER
+    prepared: PreparedScene, segments: Segments, branch_of: Index, deadline: Deadline = NEVER
 ) -> CornerStates:
-    """Configurations at all corners of small triangles, judged.
+    """Configurations at all corners of the small triangles of a painted surface, judged.
 
     Args:
         branch_of: (segments,) the branch of each segment's color.
     """
-    own = np.flatnonzero(small.segment >= 0)
+    whole = segments.surface.mesh
+    fine, side = small_triangles(whole)
+    normals = unit_everywhere(whole, segments.normals)
+    segment, count = segments.segment_of[fine.corners[:, 0]], len(fine.corners)
+    own = np.flatnonzero(segment >= 0)
     branches = int(branch_of.max(initial=0)) + 1
-    pairs = small.corners[own] * branches + branch_of[small.segment[own]][:, None]
+    pairs = fine.corners[own] * branches + branch_of[segment[own]][:, None]
     asked, place = np.unique(pairs, return_inverse=True)
     corner, branch = asked // branches, asked % branches
-    found = prepared.arm.follow(
-        small.points[corner], -small.normals[corner], branch.astype(np.intp)
-    )
+    found = prepared.arm.follow(fine.points[corner], -normals[corner], branch.astype(np.intp))
     verdicts = prepared.judge(found, deadline)
     place = place.reshape(-1, 3)
-    at_corners = found[place]
-    reasons = np.full((len(small.corners), 3), VALID, dtype=np.uint8)
+    reasons = np.full((count, 3), VALID, dtype=np.uint8)
     reasons[own] = verdicts.reasons[place]
-    one, two, three = at_corners.swapaxes(0, 1)
+    one, two, three = found[place].swapaxes(0, 1)
     space = joint_space(prepared)
     out, across, back = space.step(one, two), space.step(two, three), space.step(three, one)
-    wound = np.zeros(len(small.corners), dtype=bool)
+    wound = np.zeros(count, dtype=bool)
     wound[own] = (np.abs(space.periods(out + across + back)) > 0).any(axis=1)  # NaN is not
-    joints = np.full((len(small.corners), 3, found.shape[1]), np.nan)
+    joints = np.full((count, 3, found.shape[1]), np.nan)
     joints[own] = np.stack([one, one + out, one - back], axis=1)
-    return CornerStates(small, joints, reasons, space, wound)
+    return CornerStates(whole, fine, normals, side, segment, joints, reasons, wound)
 
 
 FOLDED = "folded"
@@ -147,19 +122,18 @@ class ArmRefusals:
         """
         self._prepared, self._branch, self._deadline = prepared, branch, deadline
         self.names = (*prepared.judge.reason_names, JUMP, FOLDED)
-        small = states.small
-        self._folded = _folded(small, touched) if prepared.robot.task.direction else []
+        fine, self._whole = states.fine, states.whole
+        self._folded = _folded(states, touched) if prepared.robot.task.direction else []
         self.doubtful = set(self._folded)
         self._failed: list[tuple[Array, int]] = []
         self._around = around
-        own = np.flatnonzero(small.segment == segment)
-        corners = small.corners[own].ravel()
-        rows = np.column_stack([small.points[corners], small.normals[corners]])
+        own = np.flatnonzero(states.segment == segment)
+        corners = fine.corners[own].ravel()
+        rows = np.column_stack([fine.points[corners], states.normals[corners]])
         codes = states.reasons[own].ravel().tolist()
         self._known = dict(zip(map(bytes, rows), codes, strict=True))
-        self._small = small
         for number in own[states.wound[own]].tolist():
-            self.add(number // 6, small.points[small.corners[number]].mean(axis=0), JUMP)
+            self.add(number // 6, fine.points[fine.corners[number]].mean(axis=0), JUMP)
 
     def add(self, face: int, point: Array, why: str) -> None:
         """A sample (3,) in a triangle of the surface that has failed."""
@@ -195,7 +169,7 @@ class ArmRefusals:
 
     def _behind(self, points: Array, normals: Array) -> Mask:
         """At which points (k, 3) the tool would come from behind the triangle that it touches."""
-        mesh, behind = self._small.whole, np.zeros(len(points), dtype=bool)
+        mesh, behind = self._whole, np.zeros(len(points), dtype=bool)
         for face in self._folded:
             facing, corner = mesh.triangle_normals[face], mesh.points[mesh.corners[face, 0]]
             near = (normals @ facing < _FACING) & (np.abs((points - corner) @ facing) < _INSIDE)
@@ -205,13 +179,13 @@ class ArmRefusals:
         return behind
 
 
-def _folded(small: SmallTriangles, touched: Mask) -> list[int]:
+def _folded(states: CornerStates, touched: Mask) -> list[int]:
     """The triangles beside some vertices (n,) where the normal may lead behind them, ascending.
 
     No normal between those of the corners is farther from the triangle's own than the worst corner.
     """
-    mesh = small.whole
-    normals = small.normals[mesh.corners]
+    mesh = states.whole
+    normals = states.normals[mesh.corners]
     behind = (np.einsum("mkj,mj->mk", normals, mesh.triangle_normals) < _FACING).any(axis=1)
     behind &= touched[mesh.corners].any(axis=1)
     return [int(face) for face in np.flatnonzero(behind)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -155,20 +156,13 @@ def cut_where_full(stroke: Stroke, space: JointSpace, joint_names: tuple[str, ..
     parts: list[Stroke] = []
     first = 0
     while first < len(stroke) - 1:
-        fits, too_far = first, len(stroke)  # how far it is known to fit, and not to
-        if space.fits(stroke.joints[first:]):
-            fits = too_far - 1
-        while too_far - fits > 1 and fits < len(stroke) - 1:
-            middle = (fits + too_far) // 2
-            if space.fits(stroke.joints[first : middle + 1]):
-                fits = middle
-            else:
-                too_far = middle
-        part = stroke.part(first, fits + 1)
+        counts = range(1, len(stroke) - first + 1)
+        fitting = bisect(counts, 0, key=lambda n: not space.fits(stroke.joints[first : first + n]))
+        part = stroke.part(first, first + max(fitting, 1))
         if parts:
             part = replace(part, parting=_full(stroke, parts[-1], first, space, joint_names))
         parts.append(part)
-        first = fits
+        first += len(part) - 1
         if len(part) < 2:  # not even one step fits, which the tests of samples leave no room for
             break
     return parts

@@ -49,7 +49,7 @@ class Steps(NamedTuple):
     turns: Index
 
 
-def steps_of(states: CornerStates, segment: int, closed: Mask) -> Steps:
+def steps_of(states: CornerStates, space: JointSpace, segment: int, closed: Mask) -> Steps:
     """The steps on a segment, without small triangles that are not valid all over.
 
     A step leads across each side between the middle of a mesh edge and a centroid. On one side of
@@ -59,20 +59,20 @@ def steps_of(states: CornerStates, segment: int, closed: Mask) -> Steps:
     Args:
         closed: (k,) mesh edges that no path crosses.
     """
-    small, joints = states.small, states.joints
-    kept = (small.segment == segment) & ~states.bad
-    vertex, place = np.unique(small.corners[kept, 0], return_inverse=True)
+    joints = states.joints
+    kept = (states.segment == segment) & ~states.bad
+    vertex, place = np.unique(states.fine.corners[kept, 0], return_inverse=True)
     lowest = np.full((len(vertex), joints.shape[2]), np.inf)
     highest = -lowest
     np.minimum.at(lowest, place, joints[kept].min(axis=1))
     np.maximum.at(highest, place, joints[kept].max(axis=1))
     numbers = np.arange(len(kept)).reshape(-1, 3, 2)
     here, there = numbers[:, :, 0].ravel(), np.roll(numbers[:, :, 1], -1, axis=1).ravel()
-    crossed = kept[here] & kept[there] & ~closed[small.side[here]]
+    crossed = kept[here] & kept[there] & ~closed[states.side[here]]
     here, there = here[crossed], there[crossed]
     place_of = np.full(len(kept), -1)
     place_of[kept] = place
-    turns = states.space.periods(joints[here, 1] - joints[there, 2]).astype(np.int64)
+    turns = space.periods(joints[here, 1] - joints[there, 2]).astype(np.int64)
     return Steps(
         vertex, (lowest + highest) / 2, np.column_stack([place_of[here], place_of[there]]), turns
     )

@@ -13,7 +13,7 @@ import os
 import tempfile
 import time
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 import cellcolor
@@ -52,6 +52,13 @@ class Proof:
         """The one with the fewest segments that was found; None without a division."""
         divided = [solution for solution in self.found if solution.cells is not None]
         return min(divided, key=lambda solution: solution.segments or 0, default=None)
+
+    @cached_property
+    def why_not_fewer(self) -> str | None:
+        """Why there cannot be fewer segments than the minimum, a clause; None if not known."""
+        if self.solution is None or self.decomposition is None:
+            return None
+        return self.solution.why_not_fewer(self.decomposition.instance)
 
 
 def prove(
@@ -110,11 +117,16 @@ class ProofCache:
     The fingerprint covers the surface's content and cellcolor's own source. If one of them changes,
     the surface is proved again. A file holds solutions and the time limit under which they were
     found. It holds no bounds: those are computed when it is read.
+
+    Attributes:
+        folder: where; it is created if it does not exist.
+        seconds: the time limit that a new proof would have.
     """
 
     folder: Path
+    seconds: float
 
-    def get(self, surface: LabelledSurface, seconds: float, deadline: Deadline) -> Proof | None:
+    def get(self, surface: LabelledSurface, deadline: Deadline) -> Proof | None:
         """What the kept solutions prove, or None if the surface has to be proved again.
 
         The checker counts the upper end of the range. The lower end is the best bound whose
@@ -123,9 +135,6 @@ class ProofCache:
         The surface has to be proved again if there is no file that can be read in time, if the
         checker rejects one of its solutions, if a verified bound exceeds the upper end, so that one
         of the two is wrong, or if the ends differ, and that proof had less time.
-
-        Args:
-            seconds: the time limit that a new proof would have.
         """
         file = self._file(surface)
         if not file.is_file():  # opening a pipe would block
@@ -154,14 +163,14 @@ class ProofCache:
                     upper = min(upper, report.segments)
         except (InputError, OutOfTime):
             return None
-        if verified > upper or (max(verified, claimed) < upper and seconds > earlier):
+        if verified > upper or (max(verified, claimed) < upper and self.seconds > earlier):
             return None
         bounds = ProvenRange(verified, upper)
         kept_lower = min(claimed, upper) if claimed > verified else None
         return Proof(bounds, decomposition, tuple(found), kept_lower)
 
-    def put(self, surface: LabelledSurface, seconds: float, proof: Proof) -> None:
-        """Write what was found within a time limit; creates the folder.
+    def put(self, surface: LabelledSurface, proof: Proof) -> None:
+        """Write what was found within the time limit.
 
         Raises:
             InputError: the folder cannot be written to, or something else has the file's name.
@@ -170,7 +179,7 @@ class ProofCache:
             return
         kept = {
             # JSON has no infinity; 1e300 is longer than any time limit.
-            "seconds": min(float(seconds), 1e300),
+            "seconds": min(float(self.seconds), 1e300),
             "solutions": [solution.to_document() for solution in proof.found],
         }
         place, written = self.folder, None

@@ -18,13 +18,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array
 from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.plan import Plan
-from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, RefusedResult
-from cellcolor.painting.paint import BorderMeasures, BorderReport, Painted
+from cellcolor.painting.paint import Painted
 from cellcolor.painting.relabelling import Nearby, Relabelling
 
 
@@ -41,7 +40,7 @@ def move_borders(
         cost: (n, colors) cost of painting a vertex in a color, from 0 (best) to 1; None for 0.
 
     Returns:
-        The painting with moved borders; its ``borders`` reports what has changed.
+        The painting with moved borders.
 
     Raises:
         InputError: the radius is not positive, or the cost has another shape or is not finite.
@@ -70,35 +69,4 @@ def move_borders(
     counted = check_plan(surface, plan).segments
     if counted != painted.segments:
         raise RefusedResult(f"moved borders have {counted} segments, not {painted.segments}")
-
-    def measured(segment_of: Index) -> BorderMeasures:
-        colored = np.flatnonzero(segment_of >= 0)
-        color = [color_of[segment] for segment in segment_of[colored].tolist()]
-        areas = nearby.areas[colored]
-        mean = np.average(cost[colored, color], weights=areas) if areas.any() else 0.0
-        return BorderMeasures(border_length(surface, segment_of), float(mean))
-
-    moved = int((segment_of != painted.segment_of).sum())
-    report = BorderReport(measured(painted.segment_of), measured(segment_of), moved)
-    return replace(painted, plan=plan, segment_of=segment_of, borders=report)
-
-
-def border_length(surface: LabelledSurface, segment_of: Index) -> float:
-    """The length in m of all borders between segments (n,), -1 for none.
-
-    In a triangle with two segments a border is a straight line between the middles of two mesh
-    edges. In a triangle with three, it consists of lines from the middles to the center.
-    """
-    places = surface.vertices[surface.faces]
-    own = segment_of[surface.faces]
-    following = own[:, [1, 2, 0]]
-    crossed = (own != following) & (own >= 0) & (following >= 0)
-    middles = (places + places[:, [1, 2, 0]]) / 2
-    count = crossed.sum(axis=1)
-    three = np.linalg.norm(middles - places.mean(axis=1, keepdims=True), axis=2)
-    total = three[count == 3].sum()
-    # One border edge: the third vertex has no segment, so the line ends at the center.
-    for row in np.flatnonzero(count == 1).tolist():
-        total += three[row][crossed[row]].sum()
-    ends = middles[count == 2][crossed[count == 2]].reshape(-1, 2, 3)
-    return float(total + np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum())
+    return replace(painted, plan=plan, segment_of=segment_of)

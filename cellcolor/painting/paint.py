@@ -33,34 +33,6 @@ from cellcolor.painting.trees import TooNarrow, Trees
 from cellcolor.union_find import UnionFind
 
 
-@dataclass(frozen=True)
-class BorderMeasures:
-    """Where the borders of a painting are, in numbers.
-
-    Attributes:
-        length_m: of all borders between segments, m.
-        cost: mean of the caller's cost over the area that has a color; 0 if there is no such cost.
-    """
-
-    length_m: float
-    cost: float
-
-
-@dataclass(frozen=True)
-class BorderReport:
-    """What moving the borders has changed.
-
-    Attributes:
-        before: as the solution was painted.
-        after: as they are now.
-        moved: how many vertices have changed their segment.
-    """
-
-    before: BorderMeasures
-    after: BorderMeasures
-    moved: int
-
-
 @dataclass(frozen=True, repr=False, eq=False)
 class Painted(WithArrays):
     """A painted solution.
@@ -76,7 +48,6 @@ class Painted(WithArrays):
             the given surface lies between itself and itself.
         merged: segments of the solution that have one color and touch, so that they are one when
             painted; only where the solution has more than are needed.
-        borders: what moving them has changed; None if they are where the drawing has put them.
         minima: of a scene that was asked about its painting the segments of each surface that was
             solved. There are several if the scene refused a painting.
         refused: vertices, ascending, at which the scene refuses the painting all the same: a new
@@ -91,7 +62,6 @@ class Painted(WithArrays):
     stands_for: Index
     between: Index
     merged: tuple[tuple[int, ...], ...]
-    borders: BorderReport | None = None
     minima: tuple[int, ...] = ()
     refused: tuple[int, ...] = ()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from trimesh.util import append_faces
 
 from cellcolor.arrays import Array, Index
 from cellcolor.data.candidate_table import VALID
@@ -17,7 +18,6 @@ from cellcolor.pictures.picture import FAINT, Layer, Picture3D, SpaceLines, Text
 
 BESIDE = (28, 40)
 """The heights to look from, degrees, so that arm and part are seen side by side."""
-_AROUND = 20
 _GRID = 13
 OBSTACLE, BODY, GROUND = "#882255", "#C8C4B0", "#9AA3AF"
 _LINKS = ("#AEB6C2", "#7F8A9B")  # alternating
@@ -47,7 +47,10 @@ def draw_arm(build: BuildResult, vertex: int, branch: int) -> Picture3D:
     for body in robot.bodies:
         links.setdefault(body.link, []).append(_placed(body, poses))
     fills = link_fills(robot)
-    layers = [Layer(link, fills[link], *_joined(meshes)) for link, meshes in links.items()]
+    layers = [
+        Layer(link, fills[link], *append_faces(*zip(*meshes, strict=True)))
+        for link, meshes in links.items()
+    ]
     arm = np.concatenate([layer.points for layer in layers])
     layers.append(Layer("object", FAINT, build.surface.vertices, build.surface.faces))
     layers += surroundings(build.prepared)
@@ -101,7 +104,7 @@ def surroundings(prepared: PreparedScene) -> list[Layer]:
     if scene.obstacle:
         shells = [(each, *each.shell(scene.folder)) for each in scene.obstacle]
         meshes = [(each.placed(points), triangles) for each, points, triangles in shells]
-        layers.append(Layer("obstacles", OBSTACLE, *_joined(meshes)))
+        layers.append(Layer("obstacles", OBSTACLE, *append_faces(*zip(*meshes, strict=True))))
     return layers
 
 
@@ -111,34 +114,10 @@ def arm_points(robot: Robot, joints: Array) -> Array:
     return np.concatenate([_placed(body, poses)[0] for body in robot.bodies])
 
 
-def body_mesh(body: Body) -> _Mesh:
-    """Points (k, 3) in m and triangles (t, 3) of a body, in the frame of its joint."""
-    if body.solid is not None:
-        return body.solid.vertices, body.solid.faces
-    return _round(body)
-
-
 def _placed(body: Body, poses: Poses) -> _Mesh:
-    points, triangles = body_mesh(body)
+    points, triangles = body.shape.shell()
     turned = points @ poses.rotation[0, body.joint].T + poses.origin[0, body.joint]
     return turned, triangles
-
-
-def _round(body: Body) -> _Mesh:
-    """All points within a radius of a segment, or a flat-ended cylinder around it."""
-    from trimesh.creation import capsule, cylinder
-    from trimesh.geometry import align_vectors
-
-    axis = body.end - body.start
-    length = float(np.linalg.norm(axis))
-    if body.flat:
-        made = cylinder(body.radius, length, sections=_AROUND)
-    else:
-        made = capsule(length, body.radius, (_AROUND, _AROUND))
-        made.apply_translation(-made.bounds.mean(axis=0))
-    turn = align_vectors([0, 0, 1], axis)[:3, :3] if length else np.eye(3)
-    middle = (body.start + body.end) / 2
-    return made.vertices @ turn.T + middle, made.faces.astype(np.int64)
 
 
 def grid(ground: Shape, points: Array) -> SpaceLines:
@@ -152,11 +131,3 @@ def grid(ground: Shape, points: Array) -> SpaceLines:
     along_x = np.stack([knots[:-1], knots[1:]], axis=2).reshape(-1, 2, 3)
     along_y = np.stack([knots[:, :-1], knots[:, 1:]], axis=2).reshape(-1, 2, 3)
     return SpaceLines("ground", GROUND, np.concatenate([along_x, along_y]))
-
-
-def _joined(meshes: list[_Mesh]) -> _Mesh:
-    counts = np.cumsum([0, *[len(points) for points, _ in meshes[:-1]]])
-    return (
-        np.concatenate([points for points, _ in meshes]),
-        np.concatenate([t + first for (_, t), first in zip(meshes, counts, strict=True)]),
-    )

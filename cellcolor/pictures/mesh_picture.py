@@ -7,10 +7,14 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
 
 from cellcolor.arrays import Array, Index
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.frontend.parts.inspection import Inspection
+from cellcolor.mesh.dividing import small_triangles
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.pictures.picture import (
     FAINT,
     ClassedMesh,
@@ -97,20 +101,11 @@ def mesh_picture_parts(vertices: Array, faces: Index, labels: Index) -> tuple[Ar
     """
     corner = labels[faces]
     whole = (corner == corner[:, :1]).all(axis=1)
-    mixed = faces[~whole]
-    middles = (vertices[mixed] + vertices[np.roll(mixed, -1, axis=1)]) / 2
-    centers = vertices[mixed].mean(axis=1)
-    points = np.concatenate([vertices, middles.reshape(-1, 3), centers])
-    # Middle e of a face lies between its corners e and e + 1.
-    middle = len(vertices) + np.arange(3 * len(mixed)).reshape(-1, 3)
-    center = np.repeat(len(vertices) + 3 * len(mixed) + np.arange(len(mixed)), 3).reshape(-1, 3)
-    after = np.stack([mixed, middle, center], axis=2).reshape(-1, 3)
-    before = np.stack([mixed, center, np.roll(middle, 1, axis=1)], axis=2).reshape(-1, 3)
-    pieces = labels[mixed].ravel()
+    small, _ = small_triangles(TriangleMesh(vertices, faces[~whole]))
     return (
-        points,
-        np.concatenate([faces[whole], after, before]),
-        np.concatenate([corner[whole, 0], pieces, pieces]),
+        small.points,
+        np.concatenate([faces[whole], small.corners]),
+        np.concatenate([corner[whole, 0], np.repeat(corner[~whole].ravel(), 2)]),
     )
 
 
@@ -133,22 +128,17 @@ def _numbers(surface: LabelledSurface, view: SurfaceView) -> list[Text]:
     return texts
 
 
-def _depth(surface: LabelledSurface, labels: Index) -> Index:
+def _depth(surface: LabelledSurface, labels: Index) -> Array:
     """Mesh edges from each vertex to the nearest border of its class or of the mesh."""
     first, second = surface.mesh.edges.T
-    depth = np.full(len(labels), -1, dtype=np.int64)
-    depth[surface.mesh.border] = 0
-    depth[surface.mesh.edges[labels[first] != labels[second]]] = 0
-    if not (depth == 0).any():
-        return np.zeros(len(labels), dtype=np.int64)
-    level = 0
-    while (depth < 0).any():
-        for a, b in ((first, second), (second, first)):
-            depth[b[(depth[a] == level) & (depth[b] < 0)]] = level + 1
-        level += 1
-        if not (depth == level).any():  # a part of the surface with one class and without a rim
-            depth[depth < 0] = 0
-    return depth
+    borders = surface.mesh.edges[labels[first] != labels[second]]
+    starts = np.union1d(np.flatnonzero(surface.mesh.border), borders.ravel())
+    graph = csr_array((np.ones(len(first)), (first, second)), shape=(len(labels), len(labels)))
+    if not len(starts):
+        return np.zeros(len(labels))
+    depth = dijkstra(graph, directed=False, indices=starts, unweighted=True, min_only=True)
+    # A part of the surface with one class and without a rim has no depth.
+    return np.where(np.isfinite(depth), depth, 0)
 
 
 def eye(

@@ -17,7 +17,7 @@ A picture is a function. The names of its parameters say what it is drawn of:
 ``marked``         indices of vertices of the plan that are pointed at
 =================  =============================================================================
 
-A parameter with a default is passed only where there is such a thing.
+An option of ``show`` with a default is passed only where it is given; nothing else has a default.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Picture:
         draw: called with parts by name. It raises InputError where these parts cannot be drawn
             together, and names the part.
         needs: what it cannot be drawn without.
-        takes: what it uses besides, where there is such a thing.
+        takes: options that it uses besides, where they are given.
     """
 
     draw: Callable[..., Picture2D | Picture3D]

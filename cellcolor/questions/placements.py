@@ -42,9 +42,7 @@ class PlacementQuestion:
     """What is asked about placements.
 
     Attributes:
-        ranges: from where to where the part may be moved: ``x``, ``y`` and ``z`` in m, and its
-            angles ``roll``, ``pitch`` and ``yaw`` (extrinsic x, y, z) in rad. What is not in it
-            stays.
+        ranges: from where to where the variables may go; what is not in it stays.
         cover: the share of the whole surface that has to be covered, 0 to 1; None for as much as
             where the part stands.
         points: placements that are tried all over the ranges; about three quarters as many, 15 at

@@ -257,7 +257,7 @@ def minima_at(
             if prepared is None:
                 prepared = there = prepare(moved, deadline)
             else:
-                there = prepared.amid(moved) if base else prepared.at(placement)
+                there = prepared.at(moved)
             within = stands_in(there)
             if within is None and cover is None:
                 rows.append(_minimum(there, pose, options))

@@ -10,7 +10,7 @@ is the same as if all were built.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TypeAlias
 
@@ -34,9 +34,9 @@ from cellcolor.questions.placing import (
     spread,
 )
 
-Minima: TypeAlias = Callable[[Scene, str, Sequence[Pose], float | None], list[PlacedMinimum]]
+Minima: TypeAlias = Callable[[Scene, Sequence[Pose], float | None], Iterator[list[PlacedMinimum]]]
 """Asks for the minimum of each placement of a scene, or for bounds where the share that is enough
-is given; the text names the mesh. There are fewer rows if the time limit comes first."""
+is given, some at a time in any order. Rows are missing where the time limit comes first."""
 
 _OWN = "own"  # the mesh of the scene itself
 _CLOSER = (0.3, 0.15, 0.08, 0.04, 0.02)
@@ -50,16 +50,14 @@ _TOGETHER = 16  # of them, before it is asked whether they hold
 def search_places(
     scene: Scene,
     question: PlacementQuestion,
-    alone: Minima,
-    many: Minima,
+    minima: Minima,
     deadline: Deadline,
     report: Callable[[str], None],
 ) -> Placements:
     """Look for placements with fewer lift-offs, and prove the best ones.
 
     Args:
-        alone: what asks about the scene's own placement.
-        many: what asks about all others, perhaps in other processes.
+        minima: asked about each placement once on each mesh, and again where bounds do not do.
         report: told what is being done.
 
     Raises:
@@ -68,18 +66,19 @@ def search_places(
     """
     report("where it stands")
     start = (0.0,) * 6 if question.base else pose_of(scene.placement)
-    rows = alone(scene, _OWN, [start], None)
-    if not rows:
+    deadline.check()
+    here = next((row for rows in minima(scene, [start], None) for row in rows), None)
+    if here is None:
         raise OutOfTime
-    if question.cover is None and rows[0].segments is None:
+    if question.cover is None and here.segments is None:
         message = (
             "say how much has to be covered: where the scene has it, the part cannot stand "
-            f"({rows[0].refused or 'not solved in time'})"
+            f"({here.refused or 'not solved in time'})"
         )
         raise InputError(None, "cover", message)
-    search = _Search(scene, question, rows[0], many, report)
+    search = _Search(scene, question, here, minima, deadline, report)
     try:
-        search.try_on_coarse_mesh(deadline)
+        search.try_on_coarse_mesh()
         search.prove()
     except OutOfTime:
         search.complete = False
@@ -98,12 +97,14 @@ class _Search:
         scene: Scene,
         question: PlacementQuestion,
         here: PlacedMinimum,
-        many: Minima,
+        ask: Minima,
+        deadline: Deadline,
         report: Callable[[str], None],
     ) -> None:
         self.complete = True
         self._scene, self._question, self._here = scene, question, here
-        self._many, self._report = many, report
+        self._ask, self._deadline, self._report = ask, deadline, report
+        self._known = {(_OWN, here.pose): here}
         self._cover = here.covered_share if question.cover is None else question.cover
         self._enough = self._cover  # on the coarse mesh
         self._tried: list[PlacedMinimum] = []
@@ -111,11 +112,12 @@ class _Search:
         self._others: list[PlacedMinimum] = []
         self._chosen: list[Pose] = []
 
-    def try_on_coarse_mesh(self, deadline: Deadline) -> None:
+    def try_on_coarse_mesh(self) -> None:
         """Try placements all over the ranges, then around the best ones."""
         asked = self._question
         self._report("a coarse mesh")
-        coarse, mesh = coarse_scene(self._scene, asked.vertices, deadline), str(asked.vertices)
+        coarse = coarse_scene(self._scene, asked.vertices, self._deadline)
+        mesh = str(asked.vertices)
         if asked.cover is None:
             # The share of a coarse mesh is another one: like is compared with like.
             for row in self._minima(coarse, mesh, [self._here.pose]):
@@ -164,9 +166,29 @@ class _Search:
     def _minima(
         self, scene: Scene, mesh: str, poses: Sequence[Pose], cover: float | None = None
     ) -> list[PlacedMinimum]:
-        rows = self._many(scene, mesh, poses, cover)
-        self.complete &= len(rows) == len(poses)
-        return rows
+        """A row for each placement, in order; fewer if the deadline comes first.
+
+        Args:
+            mesh: the name of this scene's mesh.
+            cover: the share that is enough, for bounds where nothing better is known; the same for
+                all placements of a mesh. None for whole builds.
+
+        Raises:
+            OutOfTime: the deadline came before the first.
+        """
+        self._deadline.check()
+        known = {
+            pose: row
+            for (its, pose), row in self._known.items()
+            if its == mesh and (cover is not None or not row.at_least)
+        }
+        new = [pose for pose in dict.fromkeys(poses) if pose not in known]
+        for rows in self._ask(scene, new, cover):
+            known |= {row.pose: row for row in rows}
+            self._known |= {(mesh, row.pose): row for row in rows}
+            self._report(f"{len(self._known)} placements")
+        self.complete &= known.keys() >= set(poses)
+        return [known[pose] for pose in poses if pose in known]
 
     def _try(self, coarse: Scene, mesh: str, poses: Sequence[Pose]) -> None:
         self._tried += self._minima(coarse, mesh, poses, self._enough)

@@ -93,7 +93,7 @@ def candidates_of(
             try:
                 if prepared is None:
                     prepared = prepare(given.varied(placement=placement, file=given.file), deadline)
-                surface = _built(prepared.at(placement), deadline)
+                surface = _built(prepared.at(given.varied(placement=placement)), deadline)
             except OutOfTime:
                 if not found:
                     raise
@@ -140,7 +140,7 @@ def _built(there: PreparedScene, deadline: Deadline) -> LabelledSurface:
     if not any(surface.vertex_colors):
         raise InputError(None, None, "nothing is reached")
     decomposition_of(surface, deadline=deadline)  # refuses cells that are not planar
-    own = there.part.surface
+    own = there.own_surface
     return LabelledSurface(
         there.scene.name,
         surface.colors,
@@ -155,7 +155,7 @@ def _built(there: PreparedScene, deadline: Deadline) -> LabelledSurface:
 def _check_same_part(part: LabelledSurface | None, prepared: PreparedScene) -> None:
     if part is None:
         return
-    own = prepared.part.surface
+    own = prepared.own_surface
     same = np.array_equal(part.vertices, own.vertices) and np.array_equal(part.faces, own.faces)
     if not same:
         file = None if prepared.scene.file is None else str(prepared.scene.file)

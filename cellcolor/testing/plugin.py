@@ -69,7 +69,7 @@ def cellcolor_oracle(request: pytest.FixtureRequest) -> Callable[[Solvable], Sur
     nothing again; ``--cache-clear`` forgets it. Fixtures of any scope can use it. The verdict is a
     property of the test, which ``--junit-xml`` writes.
     """
-    from cellcolor.testing.surface_under_test import open_surface
+    from cellcolor.testing.surface_under_test import SurfaceUnderTest
 
     config, session = request.config, request.session
     cache, folder = getattr(config, "cache", None), config.getoption(_CACHE)
@@ -83,7 +83,8 @@ def cellcolor_oracle(request: pytest.FixtureRequest) -> Callable[[Solvable], Sur
         name = f"cellcolor: {surface}"  # the last verdict, of a property test's many
         properties[:] = [own for own in properties if own[0] != name] + [(name, verdict)]
 
-    return partial(open_surface, config.getoption(_TIME_LIMIT), folder, record)
+    limit: float = config.getoption(_TIME_LIMIT)
+    return partial(SurfaceUnderTest, time_limit=limit, folder=folder, record=record)
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -10,30 +10,13 @@ from pathlib import Path
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import OutOfTime
 from cellcolor.door.drawing import show
-from cellcolor.door.oracle import AnyPlan, KeepingOracle
+from cellcolor.door.oracle import AnyPlan, Oracle
 from cellcolor.door.subject import Solvable
 from cellcolor.errors import CellcolorError, InputError
 from cellcolor.oracle import ProvenRange, Verdict
 from cellcolor.testing import PICTURES
 
 _SHOWN = 3  # problems of a plan that is not valid
-
-
-def open_surface(
-    time_limit: float,
-    folder: Path | None,
-    record: Callable[[str, str], None],
-    source: Solvable,
-) -> SurfaceUnderTest:
-    """A surface for tests; errors say all in one line, without the way through our own code."""
-    __tracebackhide__ = True
-    try:
-        return SurfaceUnderTest(source, time_limit, folder, record)
-    except InputError as error:
-        raise error.with_traceback(None) from None
-    except OutOfTime:
-        message = f"the scene was not built in {time_limit:g} s (--cellcolor-time-limit)"
-        raise OutOfTime(message) from None
 
 
 class SurfaceUnderTest:
@@ -50,7 +33,7 @@ class SurfaceUnderTest:
         folder: Path | None,
         record: Callable[[str, str], None],
     ) -> None:
-        """Open the surface; nothing is proved yet.
+        """Open the surface; nothing is proved yet. Errors show nothing of our own code.
 
         Args:
             source: a labelled surface, a scene, or an instance that names its surface.
@@ -60,8 +43,16 @@ class SurfaceUnderTest:
 
         Raises:
             InputError: the source cannot be used, or has no surface.
+            OutOfTime: a scene was not built in time.
         """
-        self._oracle = KeepingOracle(source, time_limit, folder)
+        __tracebackhide__ = True
+        try:
+            self._oracle = Oracle(source, time_limit=time_limit, cache=folder)
+        except InputError as error:
+            raise error.with_traceback(None) from None
+        except OutOfTime:
+            message = f"the scene was not built in {time_limit:g} s (--cellcolor-time-limit)"
+            raise OutOfTime(message) from None
         self._folder, self._record = folder, record
         self.surface: LabelledSurface = self._oracle.surface
 

@@ -102,11 +102,8 @@ def fields_of(rows: str) -> Callable[[Triangles], Sequence[Array]]:
 
 def _normal(mesh: Triangles) -> Array:
     """The mean unit normal (3,) of a part; 0 of a closed one."""
-    corners = mesh.points[mesh.corners]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    whole = np.linalg.norm(normals, axis=1).sum()
-    mean = normals.sum(axis=0)
-    return unit(mean) if np.linalg.norm(mean) > _OPEN * whole else np.zeros(3)
+    total = mesh.area_vectors.sum(axis=0) / 2
+    return unit(total) if np.linalg.norm(total) > _OPEN * mesh.areas.sum() else np.zeros(3)
 
 
 def _all_around(mesh: Triangles) -> list[Array]:
@@ -116,9 +113,7 @@ def _all_around(mesh: Triangles) -> list[Array]:
         return _coordinates(mesh, _TRIED)
     u = unit(np.cross(normal, np.eye(3)[np.abs(normal).argmin()]))
     v = np.cross(normal, u)
-    sides = np.sort(mesh.corners[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    edges, times = np.unique(sides, axis=0, return_counts=True)
-    steps = np.diff(mesh.points[edges[times == 1]], axis=1)[:, 0]
+    steps = np.diff(mesh.points[mesh.edges[mesh.triangles_at == 1]], axis=1)[:, 0]
     angles = np.arctan2(steps @ v, steps @ u) % np.pi
     lengths, bounds = np.histogram(angles, _BINS, (0, np.pi), weights=np.linalg.norm(steps, axis=1))
     best = bounds[:-1][np.argsort(lengths)[-2:]] + np.pi / _BINS / 2

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Index
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.wording import in_meters, looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
-from cellcolor.tool_paths.refused import Refusals, RefusedPlace, without_refused
+from cellcolor.tool_paths.refused import Refusals, without_refused
 from cellcolor.tool_paths.region import Overlap, Region, Segments, clipped, owned, regions_of
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, Laid, Pattern, find_pattern
 from cellcolor.tool_paths.rounding import Line, rounded
@@ -59,28 +59,15 @@ class Covered:
         return f"<{type(self).__name__} {self}>"
 
 
-@dataclass(frozen=True, eq=False)
-class Bounds:
-    """Where paths may lie, besides on their segments.
-
-    Attributes:
-        walls: mesh edges that no path may cross, like cracks of whatever segment is there.
-        refusals: where the tool must not touch the segments.
-        overlap: how far paths may go beyond the border of the only segment.
-    """
-
-    walls: Collection[tuple[int, int]] = ()
-    refusals: Refusals | None = None
-    overlap: Overlap | None = None
-
-
 def cover(
     segments: Segments,
     *,
     pattern: str = DEFAULT_PATTERN,
     spacing_m: float,
     tool_radius_m: float,
-    bounds: Bounds | None = None,
+    walls: Collection[tuple[int, int]] = (),
+    refusals: Refusals | None = None,
+    overlap: Overlap | None = None,
     deadline: Deadline = NEVER,
     progress: Callable[[str], None] | None = None,
 ) -> Covered:
@@ -91,7 +78,9 @@ def cover(
         pattern: the name of a registered pattern.
         spacing_m: desired distance between neighboring passes, m.
         tool_radius_m: of the tool's footprint, m.
-        bounds: where paths may lie.
+        walls: mesh edges that no path may cross, like cracks of whatever segment is there.
+        refusals: where the tool must not touch the segments.
+        overlap: how far paths may go beyond the border of the only segment.
         deadline: when to give up.
         progress: told in a few words what is being done.
 
@@ -103,14 +92,14 @@ def cover(
     lay, surface = find_pattern(pattern), segments.surface
     _check_lengths(surface, spacing_m, tool_radius_m)
     paths, measures, along_border = [], [], []
-    parts, uncovered = _parts(segments, bounds or Bounds(), spacing_m)
+    parts, uncovered = _parts(segments, spacing_m, walls, refusals, overlap)
     for number, (region, part) in enumerate(parts):
         deadline.check()
         if progress is not None:
             progress(f"covering part {number + 1} of {len(parts)}")
         area = float(part.areas.sum())
         if area < _LEAST_AREA * spacing_m**2:
-            place = _point(part.points[part.corners[0]].mean(axis=0))
+            place = tuple(part.points[part.corners[0]].mean(axis=0).tolist())
             cause = "a part smaller than a quarter of the spacing squared"
             uncovered.append(Uncovered(region.segment, area, place, cause))
             continue
@@ -131,32 +120,34 @@ def cover(
 
 
 def _parts(
-    segments: Segments, bounds: Bounds, spacing: float
+    segments: Segments,
+    spacing: float,
+    walls: Collection[tuple[int, int]],
+    refusals: Refusals | None,
+    overlap: Overlap | None,
 ) -> tuple[list[tuple[Region, Triangles]], list[Uncovered]]:
     """The meshes that paths are laid on, each with its region, and what of segments is refused."""
-    surface, refusals, overlap = segments.surface, bounds.refusals, bounds.overlap
+    surface = segments.surface
 
-    def allowed(mesh: Triangles) -> tuple[list[Triangles], list[RefusedPlace]]:
+    def allowed(mesh: Triangles, segment: int) -> tuple[list[Triangles], list[Uncovered]]:
         if refusals is None:
             return [mesh], []
-        return without_refused(mesh, refusals, _REFUSED * spacing, _LEAST_AREA * spacing**2)
+        finest, least = _REFUSED * spacing, _LEAST_AREA * spacing**2
+        return without_refused(mesh, segment, refusals, finest, least)
 
     parts, uncovered = [], []
-    for region in regions_of(segments, bounds.walls):
-        own, refused = allowed(region.mesh)
+    for region in regions_of(segments, walls):
+        own, refused = allowed(region.mesh, region.segment)
         parts += [(region, part) for part in own]
-        uncovered += [
-            Uncovered(region.segment, place.area_m2, _point(place.place), place.why)
-            for place in refused
-        ]
+        uncovered += refused
     if overlap is not None:  # refusals beyond the border do not count for the segment
         inside = segments.segment_of >= 0
         widened = np.where(overlap.widened(surface, inside), segments.segment_of.max(), -1)
         parts = [
             (region, part)
-            for region in regions_of(segments._replace(segment_of=widened), bounds.walls)
+            for region in regions_of(segments._replace(segment_of=widened), walls)
             for mesh in clipped(region.mesh, surface, inside, overlap.beyond, _REFUSED * spacing)
-            for part in allowed(mesh)[0]
+            for part in allowed(mesh, region.segment)[0]
             if owned(part, surface, inside).any()
         ]
     return parts, uncovered
@@ -224,8 +215,3 @@ def check_spacing(surface: LabelledSurface, segment_of: Index, spacing_m: float)
             f"{looks_like_millimeters(spacing_m)}"
         )
         raise InputError(None, "spacing_m", message)
-
-
-def _point(row: Array) -> tuple[float, float, float]:
-    x, y, z = row.tolist()
-    return x, y, z

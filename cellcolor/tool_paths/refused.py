@@ -7,7 +7,6 @@ than what the test refuses, however coarse the surface's mesh is.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -17,6 +16,7 @@ from scipy.spatial import cKDTree
 from cellcolor.arrays import Array, Mask
 from cellcolor.mesh.dividing import with_longest_sides
 from cellcolor.mesh.triangle_mesh import grouped
+from cellcolor.tool_paths.measures import Uncovered
 from cellcolor.tool_paths.region import kept_parts
 from cellcolor.tool_paths.triangles import Triangles, split_at
 
@@ -44,29 +44,15 @@ class Refusals(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class RefusedPlace:
-    """A connected place that is left out.
-
-    Attributes:
-        area_m2: how large it is.
-        place: a point (3,) of it where the test has failed, m; far from all that is not refused.
-        why: the reason.
-    """
-
-    area_m2: float
-    place: Array
-    why: str
-
-
 def without_refused(
-    mesh: Triangles, refusals: Refusals, finest: float, least_area: float
-) -> tuple[list[Triangles], list[RefusedPlace]]:
+    mesh: Triangles, segment: int, refusals: Refusals, finest: float, least_area: float
+) -> tuple[list[Triangles], list[Uncovered]]:
     """The parts of a mesh that are left, largest first, and what is left out.
 
+    A place of what is left out is one where the test has failed, far from all that is not refused.
+
     Args:
-        mesh: a connected part of a segment.
-        refusals: of the segment.
+        mesh: a connected part of the segment.
         finest: sides are halved until none is longer, where it matters, m.
         least_area: parts that are smaller count as refused like what is around them, m².
     """
@@ -102,10 +88,12 @@ def without_refused(
         else:
             large.append((area, part))
     large.sort(key=lambda one: -one[0])
-    return [part for _, part in large], _places(mesh, why, codes, refusals)
+    return [part for _, part in large], _places(mesh, segment, why, codes, refusals)
 
 
-def _places(mesh: Triangles, why: Codes, codes: Codes, refusals: Refusals) -> list[RefusedPlace]:
+def _places(
+    mesh: Triangles, segment: int, why: Codes, codes: Codes, refusals: Refusals
+) -> list[Uncovered]:
     """Triangles (m,) that are left out, those that meet and have the same reason as one place."""
     out = np.flatnonzero(why)
     # Triangles are joined over what they share: a corner, for one reason.
@@ -120,8 +108,8 @@ def _places(mesh: Triangles, why: Codes, codes: Codes, refusals: Refusals) -> li
         corners = np.unique(mesh.corners[members])
         deepest = corners[np.argmax(deep[corners])]
         place = refusals.tested(mesh.points[deepest], mesh.normals[deepest])
-        reason = refusals.names[why[members[0]]]
-        found.append(RefusedPlace(float(mesh.areas[members].sum()), place, reason))
+        area, reason = float(mesh.areas[members].sum()), refusals.names[why[members[0]]]
+        found.append(Uncovered(segment, area, tuple(place.tolist()), reason))
     return found
 
 

@@ -142,29 +142,22 @@ def _stretches(held: Mask) -> list[tuple[int, int]]:
 
 def _joined(line: Line, traced: dict[int, tuple[int, Line]]) -> Line:
     """The walk, some stretches of it replaced: by their first point, the last one and what."""
-    pieces, at = [], 0
+    parts, at = [], 0
     for first, (last, way) in sorted(traced.items()):
-        pieces += [_part(line, at, first), way]
+        parts += [(line, at, first), (way, 0, len(way.triangles))]
         at = last
-    pieces.append(_part(line, at, len(line.points) - 1))
-    # Each piece but the first begins with the point that the one before ends with.
-    starts = [0] + [1] * (len(pieces) - 1)
-    of_points = [
-        np.concatenate([rows[start:] for rows, start in zip(each, starts, strict=True)])
-        for each in zip(*((one.points, one.normals, one.vertices) for one in pieces), strict=True)
-    ]
-    triangles = np.concatenate([piece.triangles for piece in pieces])
-    return Line(line.mesh, of_points[0], of_points[1], triangles, of_points[2])
-
-
-def _part(line: Line, first: int, last: int) -> Line:
-    kept = slice(first, last + 1)
+    parts.append((line, at, len(line.triangles)))
+    # Each part ends with the point that the next one begins with.
+    points, normals, vertices, triangles = (
+        np.concatenate([getattr(part, name)[first:last] for part, first, last in parts])
+        for name in ("points", "normals", "vertices", "triangles")
+    )
     return Line(
         line.mesh,
-        line.points[kept],
-        line.normals[kept],
-        line.triangles[first:last],
-        line.vertices[kept],
+        np.concatenate([points, line.points[-1:]]),
+        np.concatenate([normals, line.normals[-1:]]),
+        triangles,
+        np.concatenate([vertices, line.vertices[-1:]]),
     )
 
 

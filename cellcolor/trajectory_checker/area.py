@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 from scipy.spatial import cKDTree
 
-from cellcolor.arrays import Array, Index, Mask, stretches
+from cellcolor.arrays import Array, Index, Mask, stretches, unit
 from cellcolor.data.trajectory_verdict import CoveredArea
 from cellcolor.deadline import Deadline
 from cellcolor.errors import TooLarge
@@ -17,11 +17,15 @@ from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.setup import Motion
 from cellcolor.memory import batches, check_memory
 from cellcolor.trajectory_checker.contact import Contact
-from cellcolor.trajectory_checker.covered import FAR, NEAR, Reached, covered_by, failing_places
+from cellcolor.trajectory_checker.covered import (
+    FAR,
+    NEAR,
+    Reached,
+    covered_by,
+    judge_left_out,
+)
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.fine_mesh import FineMesh
-from cellcolor.trajectory_checker.stated import judge_left_out
-from cellcolor.trajectory_checker.tolerances import Limits
 
 _TOGETHER = 20_000  # places that have at most
 _MOST = 50_000_000  # pairs; more take too long
@@ -29,63 +33,41 @@ _KEPT = 80  # and until all are counted
 _PARALLEL = 0.9  # cosine of the angle up to which two passes run along each other
 
 
-@dataclass(frozen=True)
-class Repeated:
-    """A stretch that runs along an earlier pass.
-
-    Attributes:
-        first, last: rows of the configurations in contact.
-        earlier_first, earlier_last: rows of the earlier pass beside these two.
-        length: m.
-    """
-
-    first: int
-    last: int
-    earlier_first: int
-    earlier_last: int
-    length: float
+InStrip = Callable[[Array, Index], Mask]
+"""Which points (k, 3) their segment (k,) may visit although others do."""
 
 
-@dataclass(frozen=True)
-class Strips:
+def in_strips(fine: FineMesh, visits: csr_array, width: float) -> InStrip:
     """Where neighboring segments overlap on purpose: beside what only one of them visits.
 
-    Attributes:
-        alone: the places that each segment visits alone, as a tree.
-        width: how far from there it may visit what others do, m.
+    Args:
+        visits: (n, segments) of the vertices of the fine mesh.
+        width: how far from what it has alone a segment may visit what others do, m.
     """
+    once = np.flatnonzero(np.diff(visits.indptr) == 1)
+    owner = visits.indices[visits.indptr[once]]
+    alone = {
+        number: cKDTree(fine.vertices[once[owner == number]])
+        for number in np.unique(owner).tolist()
+    }
 
-    alone: dict[int, cKDTree]
-    width: float
-
-    @classmethod
-    def of(cls, fine: FineMesh, visits: csr_array, width: float) -> Strips:
-        """Those of visits (n, segments) of the vertices of the fine mesh."""
-        once = np.flatnonzero(np.diff(visits.indptr) == 1)
-        segment = visits.indices[visits.indptr[once]]
-        return cls(
-            {
-                number: cKDTree(fine.vertices[once[segment == number]])
-                for number in np.unique(segment).tolist()
-            },
-            width,
-        )
-
-    def near(self, points: Array, segment: Index) -> Mask:
-        """Which points (k, 3) are in the strip of their segment (k,), or in what it has alone."""
+    def near(points: Array, segment: Index) -> Mask:
         found = np.zeros(len(points), dtype=bool)
-        for number, tree in self.alone.items():
+        for number, tree in alone.items():
             own = np.flatnonzero(segment == number)
-            found[own] = tree.query(points[own], distance_upper_bound=self.width)[0] < np.inf
+            found[own] = tree.query(points[own], distance_upper_bound=width)[0] < np.inf
         return found
 
-    def counted(self, fine: FineMesh, visits: csr_array) -> Index:
-        """How often (n,) each vertex is visited, in strips by the segment that does so most."""
-        total = visits.sum(axis=1)
-        vertex, segment = visits.tocoo().coords
-        outside = np.zeros(len(total), dtype=bool)
-        outside[vertex[~self.near(fine.vertices[vertex], segment)]] = True
-        return np.asarray(np.where(outside, total, visits.max(axis=1).toarray().ravel()))
+    return near
+
+
+def counted(fine: FineMesh, visits: csr_array, in_strip: InStrip) -> Index:
+    """How often (n,) each vertex is visited, in strips by the segment that does so most."""
+    total = visits.sum(axis=1)
+    vertex, segment = visits.tocoo().coords
+    outside = np.zeros(len(total), dtype=bool)
+    outside[vertex[~in_strip(fine.vertices[vertex], segment)]] = True
+    return np.asarray(np.where(outside, total, visits.max(axis=1).toarray().ravel()))
 
 
 def passes(contact: Contact, fine: FineMesh, within: float) -> csr_array:
@@ -112,20 +94,19 @@ def passes(contact: Contact, fine: FineMesh, within: float) -> csr_array:
     return coo_array((once, (vertex[begins], segment[place[begins]])), shape=size).tocsr()
 
 
-def repeated_stretches(
-    contact: Contact, strip: Index, within: float, apart: float
-) -> list[Repeated]:
+def repeated_stretches(contact: Contact, strip: Index, within: float, apart: float) -> Index:
     """The stretches that run along an earlier pass, either way.
 
     Args:
         strip: (c,) the segment of a row that may run along passes of others, -1 of all other rows.
         within: how near the earlier pass is, m.
         apart: so far, in m along the path, two places have to be to belong to two passes.
+
+    Returns:
+        (s, 4) of each the first and the last row, and the rows of the earlier pass beside these.
     """
-    if len(contact) < 2:
-        return []
     ways, points, normals = _ways(contact), contact.at.points, contact.at.normals
-    tangents = _tangents(points, contact.stroke)
+    tangents = _tangents(contact)
     earlier = np.full(len(contact), -1)
     for one, other in _near(cKDTree(points), points, within):
         close = (
@@ -137,21 +118,10 @@ def repeated_stretches(
         overlap = (strip[one] >= 0) & (strip[other] >= 0) & (strip[one] != strip[other])
         kept = close & along & ~overlap
         np.maximum.at(earlier, other[kept], one[kept])
-    return _joined(earlier, ways, apart / 2)
-
-
-def _joined(earlier: Index, ways: Array, gap: float) -> list[Repeated]:
-    """Stretches of places with an earlier one beside them, across gaps of up to ``gap`` (m)."""
     own = np.flatnonzero(earlier >= 0)
-    if not len(own):
-        return []
-    cuts = np.flatnonzero(np.diff(ways[own]) > gap) + 1
-    found = []
-    for part in np.split(own, cuts):
-        first, last = int(part[0]), int(part[-1])
-        length = float(ways[last] - ways[first])
-        found.append(Repeated(first, last, int(earlier[first]), int(earlier[last]), length))
-    return found
+    gaps = np.diff(ways[own]) > apart / 2
+    first, last = own[np.insert(gaps, 0, True)[: len(own)]], own[np.append(gaps, True)[: len(own)]]
+    return np.column_stack([first, last, earlier[first], earlier[last]])
 
 
 def _near(tree: cKDTree, points: Array, within: float) -> Iterator[tuple[Index, Index]]:
@@ -181,15 +151,12 @@ def _ways(contact: Contact) -> Array:
     return np.append(0.0, np.cumsum(np.where(contact.together, contact.steps, far)))
 
 
-def _tangents(points: Array, stroke: Index) -> Array:
+def _tangents(contact: Contact) -> Array:
     """Unit directions (c, 3) of the path, from the place before to the one after."""
-    after = np.minimum(np.arange(len(points)) + 1, len(points) - 1)
-    before = np.maximum(np.arange(len(points)) - 1, 0)
-    after = np.where(stroke[after] == stroke, after, np.arange(len(points)))
-    before = np.where(stroke[before] == stroke, before, np.arange(len(points)))
-    along = points[after] - points[before]
-    lengths = np.linalg.norm(along, axis=1, keepdims=True)
-    return np.asarray(along / np.where(lengths > 0, lengths, 1.0))
+    row, points = np.arange(len(contact)), contact.at.points
+    after = row + np.append(contact.together, False)[: len(row)]
+    before = row - np.insert(contact.together, 0, False)[: len(row)]
+    return unit(points[after] - points[before])
 
 
 _VISIT = 0.5  # spacings; a pass this close to a point is a visit of it
@@ -198,13 +165,19 @@ _BESIDE = 1.25  # spacings; by so much more than the overlap both sides visit th
 _APART = 2.0  # spacings of path between two places that belong to two passes
 _THINNED = 0.1  # spacings of path between two places of contact that are measured with
 
+# Shares of the reachable area that are within 1.5 spacings of a pass, and within 0.75, at least;
+# what is rightly left out counts as well.
+_LEAST_COVERED, _LEAST_CLOSELY_COVERED = 0.99, 0.97
+_MOST_MEAN_VISITS = 1.3
+_LONGEST_REPEATED = 3.0  # spacings that a stretch may run along an earlier pass
+
 
 def judge_area(
     built: BuildResult,
     contact: Contact,
     fine: FineMesh,
     motion: Motion,
-    limits: Limits,
+    silent: bool,
     faults: FaultList,
     deadline: Deadline,
 ) -> CoveredArea:
@@ -212,26 +185,25 @@ def judge_area(
 
     Args:
         contact: where the tip is on the surface; nothing else covers anything.
-        limits: what has to be covered, and what may be repeated.
+        silent: whether the trajectory cannot say what it leaves out, as a table cannot; then it may
+            leave out whatever no branch reaches.
     """
     trajectory, spacing = faults.trajectory, motion.spacing_m
     length = contact.length()
     contact = contact.take(_thinned(contact, spacing))
-    if limits.silent:
+    stated = {part.segment for part in trajectory.left_out}
+    if silent:
         stated = set(trajectory.segment[trajectory.contact].tolist())
-    else:
-        stated = {part.segment for part in trajectory.left_out}
     reached = covered_by(built, contact, fine, spacing, stated, deadline)
-    failing = failing_places(built.prepared, trajectory, contact, fine, deadline)
-    judge_left_out(trajectory, reached, failing, faults)
-    _note_uncovered(reached, limits, faults)
+    judge_left_out(built.prepared, contact, reached, faults, deadline)
+    _note_uncovered(reached, faults)
     contact = replace(contact, segment=np.unique(contact.segment, return_inverse=True)[1])
     by_segment = passes(contact, fine, _VISIT * spacing)
     visits, strip = by_segment.sum(axis=1), np.full(len(contact), -1)
     if motion.overlap_m:
-        strips = Strips.of(fine, by_segment, motion.overlap_m + _BESIDE * spacing)
-        visits = strips.counted(fine, by_segment)
-        strip = np.where(strips.near(contact.at.points, contact.segment), contact.segment, -1)
+        in_strip = in_strips(fine, by_segment, motion.overlap_m + _BESIDE * spacing)
+        visits = counted(fine, by_segment, in_strip)
+        strip = np.where(in_strip(contact.at.points, contact.segment), contact.segment, -1)
     visited = (visits > 0) & (reached.areas > 0)
 
     def mean(of: Array) -> float:
@@ -239,12 +211,13 @@ def judge_area(
         return float(np.average(of[visited], weights=weights)) if len(weights) else 0.0
 
     mean_visits = mean(visits)
-    if mean_visits > limits.most_mean_visits:
-        most = f"{limits.most_mean_visits:g}"
-        text = f"a place is visited {mean_visits:.3f} times on average, allowed: {most}"
+    if mean_visits > _MOST_MEAN_VISITS:
+        text = (
+            f"a place is visited {mean_visits:.3f} times on average, allowed: {_MOST_MEAN_VISITS:g}"
+        )
         faults.add("repeated", text)
     twice = repeated_stretches(contact, strip, _ALONG * spacing, _APART * spacing)
-    stated_m = _note_repeated(contact, twice, limits.longest_repeated_spacings * spacing, faults)
+    stated_m = _note_repeated(contact, twice, _LONGEST_REPEATED * spacing, faults)
     total = reached.total
     return CoveredArea(
         reachable_m2=total,
@@ -256,7 +229,7 @@ def judge_area(
         mean_visits=mean_visits,
         most_visits=int(visits[visited].max(initial=0)),
         visited_again_share=mean(visits > 1),
-        repeated_m=sum(stretch.length for stretch in twice),
+        repeated_m=sum(contact.length(first, last) for first, last, *_ in twice.tolist()),
         stated_repeated_m=stated_m,
         length_m=length,
         length_times_spacing_per_area=length * spacing / total if total else 0.0,
@@ -273,7 +246,7 @@ def _thinned(contact: Contact, spacing: float) -> Mask:
     return kept
 
 
-def _note_uncovered(reached: Reached, limits: Limits, faults: FaultList) -> None:
+def _note_uncovered(reached: Reached, faults: FaultList) -> None:
     """Note parts as large as a footprint that no pass comes near, and shares that are too low."""
     spacing, uncovered = reached.spacing, reached.uncovered
     for area, place in reached.patches(uncovered):
@@ -281,8 +254,8 @@ def _note_uncovered(reached: Reached, limits: Limits, faults: FaultList) -> None
             text = f"{area:.6f} m² are farther than {FAR * spacing:.4g} m from every pass"
             faults.add("uncovered", text, place=place)
     for mask, factor, least in (
-        (uncovered, FAR, limits.least_covered_share),
-        (reached.missed & ~reached.right, NEAR, limits.least_closely_covered_share),
+        (uncovered, FAR, _LEAST_COVERED),
+        (reached.missed & ~reached.right, NEAR, _LEAST_CLOSELY_COVERED),
     ):
         share = 1 - reached.share(mask)
         if share < least:
@@ -293,31 +266,24 @@ def _note_uncovered(reached: Reached, limits: Limits, faults: FaultList) -> None
             faults.add("uncovered", text, place=reached.patches(mask)[0][1])
 
 
-def _note_repeated(
-    contact: Contact, twice: list[Repeated], most: float, faults: FaultList
-) -> float:
+def _note_repeated(contact: Contact, twice: Index, most: float, faults: FaultList) -> float:
     """Note stretches along an earlier pass that are not stated; the length of those that are, m."""
-    sample, stated = contact.sample, np.zeros(len(contact), dtype=bool)
+    sample, stated, stated_m = contact.sample, np.zeros(len(contact), dtype=bool), 0.0
     for known in faults.trajectory.repeated:
         stated |= (sample >= known.sample) & (sample <= known.last_sample)
-    for stretch, first, last in _parts(twice, ~stated):
-        length = contact.length(first, last)
-        if length <= most:
-            continue
-        begin, end = sample[[stretch.earlier_first, stretch.earlier_last]].tolist()
-        text = (
-            f"runs for {length:.4f} m along an earlier pass, samples {begin} to {end}, allowed: "
-            f"{most:.4f} m unless the trajectory announces them"
-        )
-        place = contact.tips[first]
-        faults.add("repeated", text, int(sample[first]), int(sample[last]), place=place)
-    return sum(contact.length(first, last) for _, first, last in _parts(twice, stated))
-
-
-def _parts(twice: list[Repeated], of: Mask) -> list[tuple[Repeated, int, int]]:
-    """The first and the last row of each part of a repeated stretch in which something holds."""
-    return [
-        (stretch, stretch.first + begin, stretch.first + after - 1)
-        for stretch in twice
-        for begin, after in stretches(of[stretch.first : stretch.last + 1])
-    ]
+    for first, last, *earlier in twice.tolist():
+        own = stated[first : last + 1]
+        stated_m += sum(contact.length(first + a, first + b - 1) for a, b in stretches(own))
+        for begin, after in stretches(~own):
+            one, other = first + begin, first + after - 1
+            length = contact.length(one, other)
+            if length <= most:
+                continue
+            begun, ended = sample[earlier].tolist()
+            text = (
+                f"runs for {length:.4f} m along an earlier pass, samples {begun} to {ended}, "
+                f"allowed: {most:.4f} m unless the trajectory announces them"
+            )
+            place = contact.tips[one]
+            faults.add("repeated", text, int(sample[one]), int(sample[other]), place=place)
+    return stated_m

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -21,86 +21,27 @@ from cellcolor.trajectory_checker.tolerances import AT_VERTEX, OFF_SURFACE, TILT
 
 
 @dataclass(frozen=True)
-class AtVertices:
-    """Configurations, each compared with one vertex.
-
-    Attributes:
-        built: the scene.
-        vertex: (k,) the vertices.
-        color: (k,) the color that each configuration has there, -1 for none.
-        off: (k,) how far the tip is from the vertex, m.
-        tilt: (k,) how far the tool is from the vertex's normal, rad; 0 if the task does not ask for
-            its direction.
-        turned: (k,) how far it is from the turn that the setup gives for the branch, rad; 0 if it
-            gives none.
-        branch: (k,) of the scene's configurations there the nearest.
-        apart: (k,) how far the joint that is farthest from it is, rad or m; infinite without any.
-    """
-
-    built: BuildResult
-    vertex: Index
-    color: Index
-    off: Array
-    tilt: Array
-    turned: Array
-    branch: Index
-    apart: Array
-
-    def why_none(self, row: int) -> str:
-        """Why a configuration has no color there, a clause."""
-        off, tilt, apart = float(self.off[row]), float(self.tilt[row]), float(self.apart[row])
-        if off > OFF_SURFACE:
-            most = f"{1000 * OFF_SURFACE:g}"
-            return f"the tip is {1000 * off:.4g} mm off the vertex, allowed: {most}"
-        if tilt > TILT:
-            most = f"{np.degrees(TILT):g}"
-            return f"the tool is {np.degrees(tilt):.4g} degrees off the normal, allowed: {most}"
-        if np.isinf(apart):
-            return "the scene has no configuration there"
-        vertex, branch = int(self.vertex[row]), int(self.branch[row])
-        name = self.built.branches[branch]
-        meters = " (or m)" if self.built.robot.slides.any() else ""
-        if apart > AT_VERTEX:
-            return (
-                f"the scene's nearest configuration there, {name!r}, is {apart:.4g} rad{meters} "
-                f"off, allowed: {AT_VERTEX:g}"
-            )
-        turned = float(np.degrees(self.turned[row]))
-        if self.turned[row] > TURN:
-            most = f"{np.degrees(TURN):g}"
-            return f"the tool is {turned:.4g} degrees off its turn there, allowed: {most}"
-        code = int(self.built.reasons[vertex, branch])
-        if code != VALID:
-            return f"{name!r} fails the test {self.built.reason_names[code]!r} there"
-        return f"{name!r} was removed there by the sliver policy"
-
-
-@dataclass(frozen=True)
 class Touches:
     """Where a path touches vertices, and where it does not.
 
     Attributes:
         contacts: those in a color of their vertex.
-        in_no_color: the others, each sample against the vertex that it is at.
-        sample: (m,) the samples of ``in_no_color``.
+        in_no_color: of vertices with others the first sample, and why it has no color there.
         nearest: (n,) distance of each vertex from the nearest sample in contact, m; infinite if
             there is none.
-        misplaced: samples, ascending, whose joints put the tip somewhere else than they say.
-        misplaced_by: how far, m.
+        misplaced: samples whose joints put the tip somewhere else than they say, and how far, m.
     """
 
     contacts: VertexContacts
-    in_no_color: AtVertices
-    sample: Index
+    in_no_color: dict[int, tuple[int, str]]
     nearest: Array
-    misplaced: Index
-    misplaced_by: Array
+    misplaced: dict[int, float]
 
 
 def at_vertices(
     built: BuildResult, vertex: Index, joints: Array, deadline: Deadline = NEVER
-) -> AtVertices:
-    """The color that each configuration has at its vertex.
+) -> tuple[Index, list[str]]:
+    """The color (k,) that each configuration has at its vertex, -1 for none, and why it has none.
 
     It has to put tip and tool there as in any contact; the tool's direction counts if the task asks
     for it. Then it is of the branch of the nearest of the scene's configurations, which may be no
@@ -111,6 +52,9 @@ def at_vertices(
     Args:
         vertex: (k,) vertices.
         joints: (k, joints) in rad, finite.
+
+    Returns:
+        The colors, and a clause for each configuration, empty where it has a color.
 
     Raises:
         InputError: the arm has another number of joints.
@@ -140,7 +84,32 @@ def at_vertices(
         way = np.abs(joints - positions[vertex])[:, compared].max(axis=1)
         same = (color >= 0) & (branch == built.color_branch[divided]) & (way <= np.pi)
         color[same] = divided
-    return AtVertices(built, vertex, color, off, tilt, turned, branch, apart)
+
+    def why_none(row: int) -> str:
+        if off[row] > OFF_SURFACE:
+            most = f"{1000 * OFF_SURFACE:g}"
+            return f"the tip is {1000 * off[row]:.4g} mm off the vertex, allowed: {most}"
+        if tilt[row] > TILT:
+            by, most = np.degrees(tilt[row]), np.degrees(TILT)
+            return f"the tool is {by:.4g} degrees off the normal, allowed: {most:g}"
+        if np.isinf(apart[row]):
+            return "the scene has no configuration there"
+        name = built.branches[branch[row]]
+        if apart[row] > AT_VERTEX:
+            meters = " (or m)" if robot.slides.any() else ""
+            return (
+                f"the scene's nearest configuration there, {name!r}, is {apart[row]:.4g} "
+                f"rad{meters} off, allowed: {AT_VERTEX:g}"
+            )
+        if turned[row] > TURN:
+            by, most = np.degrees(turned[row]), np.degrees(TURN)
+            return f"the tool is {by:.4g} degrees off its turn there, allowed: {most:g}"
+        code = int(built.reasons[vertex[row], branch[row]])
+        if code != VALID:
+            return f"{name!r} fails the test {built.reason_names[code]!r} there"
+        return f"{name!r} was removed there by the sliver policy"
+
+    return color, [why_none(row) if color[row] < 0 else "" for row in range(len(color))]
 
 
 def _turned(
@@ -177,11 +146,8 @@ def touches(built: BuildResult, path: ContactPath, deadline: Deadline = NEVER) -
     """
     _check_width(built.robot, path.joints)
     tips, _ = poses_of(built.robot, path.joints, deadline)
-    misplaced, misplaced_by = np.zeros(0, dtype=np.int64), np.zeros(0)
-    if path.points is not None:
-        by = np.linalg.norm(tips - path.points, axis=1)
-        misplaced = np.flatnonzero(by > OFF_SURFACE)
-        misplaced_by = by[misplaced]
+    off = np.linalg.norm(tips - (tips if path.points is None else path.points), axis=1)
+    misplaced = {row: float(off[row]) for row in np.flatnonzero(off > OFF_SURFACE).tolist()}
     vertices, stroke = built.surface.vertices, path.stroke
     rows = np.flatnonzero(stroke >= 0)
     nearest = np.full(len(vertices), np.inf)
@@ -192,15 +158,12 @@ def touches(built: BuildResult, path: ContactPath, deadline: Deadline = NEVER) -
         near = tree.query_ball_point(tips[rows], OFF_SURFACE, return_sorted=True)
         sample = np.repeat(rows, [len(found) for found in near])
         vertex = np.fromiter((v for found in near for v in found), np.int64, len(sample))
-    found = at_vertices(built, vertex, path.joints[sample], deadline)
-    has = found.color >= 0
-    contacts = VertexContacts(stroke[sample[has]], vertex[has], found.color[has])
-    return Touches(contacts, _part(found, ~has), sample[~has], nearest, misplaced, misplaced_by)
-
-
-def _part(found: AtVertices, rows: Mask) -> AtVertices:
-    _, *of_rows = (getattr(found, field.name) for field in fields(found))
-    return AtVertices(found.built, *(values[rows] for values in of_rows))
+    color, why = at_vertices(built, vertex, path.joints[sample], deadline)
+    has, in_no_color = color >= 0, dict[int, tuple[int, str]]()
+    for row in np.flatnonzero(~has).tolist():
+        in_no_color.setdefault(int(vertex[row]), (int(sample[row]), why[row]))
+    contacts = VertexContacts(stroke[sample[has]], vertex[has], color[has])
+    return Touches(contacts, in_no_color, nearest, misplaced)
 
 
 def _check_width(robot: Robot, joints: Array) -> None:

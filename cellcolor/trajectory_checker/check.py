@@ -24,11 +24,11 @@ from cellcolor.trajectory_checker.contact import (
 )
 from cellcolor.trajectory_checker.dense import densified, poses_of
 from cellcolor.trajectory_checker.fault_list import FaultList
-from cellcolor.trajectory_checker.feed import judge_feed, judge_transfers
+from cellcolor.trajectory_checker.feed import judge_feed, judge_tool_speeds
 from cellcolor.trajectory_checker.fine_mesh import refined
 from cellcolor.trajectory_checker.joint_motion import JointLimits, judge_joints
 from cellcolor.trajectory_checker.stated import judge_lift_offs, judge_poses
-from cellcolor.trajectory_checker.tolerances import OFF_SURFACE, Limits
+from cellcolor.trajectory_checker.tolerances import OFF_SURFACE
 from cellcolor.trajectory_checker.validity import judge_validity
 
 _FINE = 0.25  # spacings; the edges of the triangles that area is measured with
@@ -41,7 +41,7 @@ def check_trajectory(
     *,
     timed: bool = True,
     minimum_lift_offs: int | None = None,
-    limits: Limits | None = None,
+    silent: bool = False,
     deadline: Deadline = NEVER,
     progress: Callable[[str], None] | None = None,
 ) -> TrajectoryVerdict:
@@ -51,17 +51,15 @@ def check_trajectory(
         built: the scene and its labelled surface: the area that has a color has to be covered.
         timed: whether its times mean anything; without them velocities are not judged.
         minimum_lift_offs: what its lift-offs are compared with.
-        limits: what it has to cover and may repeat; the usual ones without.
+        silent: whether it cannot say what it leaves out, as a table cannot.
 
     Raises:
-        InputError: the scene was prepared with another mesh than the labelled surface, the
-            trajectory is of another arm, or the setup's velocities are.
+        InputError: the trajectory is of another arm, or the setup's velocities are.
         TooLarge: surface or trajectory would not fit into memory.
     """
     report, prepared = progress or (lambda _: None), built.prepared
     robot, motion = prepared.robot, prepared.scene.setup.motion
-    direction = robot.task.direction
-    _check_mesh(built)
+    direction, touches = robot.task.direction, not prepared.setup.task.stand_off_m
     _check_arm(prepared, trajectory)
     faults = FaultList(trajectory, timed)
     notes: list[str] = []
@@ -69,15 +67,15 @@ def check_trajectory(
     tips, axes = poses_of(robot, trajectory.joints, deadline)
     joint_limits = _joint_limits(prepared, timed, notes)
     jumps = judge_joints(trajectory, tips, joint_limits, timed, faults)
-    judge_poses(trajectory, robot, tips, axes, faults)
-    judge_lift_offs(trajectory, minimum_lift_offs, faults)
     skip = jumps.copy()
     skip[[sample for sample in trajectory.unplanned if sample < len(skip)]] = True
     dense = densified(trajectory, robot, tips, axes, skip, deadline)
     feeds: tuple[StrokeFeed, ...] = ()
     if timed and motion is not None:
-        judge_transfers(trajectory, dense, motion, faults)
+        judge_tool_speeds(trajectory, dense, skip, motion, touches, faults)
         feeds = judge_feed(trajectory, dense, joint_limits, motion, faults)
+    judge_poses(trajectory, robot, tips, axes, faults)
+    judge_lift_offs(trajectory, minimum_lift_offs, faults)
     report("validity")
     judge_validity(prepared, trajectory, dense, deadline, faults)
     report("contact")
@@ -87,10 +85,9 @@ def check_trajectory(
         fine = replace(fine, away=OFF_SURFACE)
     contact = contact_of(prepared, trajectory, dense, fine, deadline)
     touching = judge_contact(contact, direction, faults)
-    if not prepared.setup.task.stand_off_m:  # else nothing is touched
+    if touches:
         judge_dragged(dense, fine, deadline, faults)
-    if prepared.setup.task.turn is not None:
-        judge_turn(prepared.setup.task.turn, contact, direction, faults)
+    judge_turn(prepared, contact, deadline, faults)
     judge_cracks(built, contact, fine, faults)
     covered: CoveredArea | None = None
     if motion is None:
@@ -99,7 +96,7 @@ def check_trajectory(
         report("area")
         deadline.check()
         on_it = contact.take(touching)
-        covered = judge_area(built, on_it, fine, motion, limits or Limits(), faults, deadline)
+        covered = judge_area(built, on_it, fine, motion, silent, faults, deadline)
         notes += _given_up(built)
     lift_offs, claimed = trajectory.lift_offs, len(trajectory.extra_lift_offs)
     minimum = minimum_lift_offs
@@ -138,20 +135,6 @@ def _given_up(built: BuildResult) -> list[str]:
     ]
 
 
-def _check_mesh(built: BuildResult) -> None:
-    """Refuse two meshes: a crack of one means nothing on the other."""
-    mesh, surface = built.prepared.surface, built.surface
-    same = np.array_equal(mesh.vertices, surface.vertices) and np.array_equal(
-        mesh.faces, surface.faces
-    )
-    if not same:
-        message = (
-            f"the scene has a mesh of {len(mesh.vertices)} vertices and its labelled surface one "
-            f"of {len(surface.vertices)}: a trajectory is judged on one"
-        )
-        raise InputError(None, "surface", message)
-
-
 def _check_arm(prepared: PreparedScene, trajectory: Trajectory) -> None:
     names = prepared.robot.joint_names
     if trajectory.joint_names != names:
@@ -166,12 +149,11 @@ def _check_arm(prepared: PreparedScene, trajectory: Trajectory) -> None:
 
 def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> JointLimits:
     robot, setup, motion = prepared.robot, prepared.scene.setup, prepared.scene.setup.motion
-    lower: Array | None = robot.lower
-    upper: Array | None = robot.upper
+    lower, upper = robot.lower, robot.upper
     if not setup.constraints.collision:
-        lower = upper = None
+        lower, upper = np.full(robot.joints, -np.inf), np.full(robot.joints, np.inf)
         notes.append("The setup leaves out collisions and joint limits.")
-    velocity, tool_speed, touch_speed = robot.velocity, np.inf, np.inf
+    velocity = robot.velocity
     acceleration: Array | None = None
     jerk: Array | None = None
     if not timed:
@@ -179,9 +161,6 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
     elif motion is None:
         notes.append("The setup has no [motion], so accelerations are not judged.")
     if motion is not None:
-        tool_speed = motion.speed_m_per_s
-        if not setup.task.stand_off_m:
-            touch_speed = motion.approach_speed_m_per_s or np.inf
         for key in ("velocities_rad_per_s", "accelerations_rad_per_s2", "jerks_rad_per_s3"):
             given = getattr(motion, f"joint_{key}")
             if given is not None and len(given) != robot.joints:
@@ -197,6 +176,4 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
         names = [robot.joint_names[joint] for joint in np.flatnonzero(np.isnan(velocity))]
         notes.append(f"Without a limit, so velocities are not judged: {', '.join(names)}.")
         velocity = np.where(np.isnan(velocity), np.inf, velocity)
-    return JointLimits(
-        lower, upper, velocity, acceleration, jerk, tool_speed, robot.slides, touch_speed
-    )
+    return JointLimits(lower, upper, velocity, acceleration, jerk, robot.slides)

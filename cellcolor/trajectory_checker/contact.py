@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -14,7 +14,6 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.setup import Turn
 from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.dense import Dense, across_of, angles, joint_steps, turns_off
 from cellcolor.trajectory_checker.fault_list import FaultList
@@ -33,7 +32,6 @@ class Contact:
         rows: (c,) those of them in contact.
         at: the nearest points of the surface.
         segment: (c,) of the painting, as the trajectory has it.
-        across: (c, 3) the tool's x axis; zero where the setup does not give the tool's turn.
         branches: (c,) of the arm, -1 for a configuration that is near no solution.
     """
 
@@ -41,7 +39,6 @@ class Contact:
     rows: Index
     at: Located
     segment: Index
-    across: Array
     branches: Index
 
     def __len__(self) -> int:
@@ -49,9 +46,8 @@ class Contact:
 
     def take(self, which: Mask) -> Contact:
         """Some of them."""
-        _, _, at, *others = (getattr(self, field.name) for field in fields(self))
-        kept = (values[which] for values in others)
-        return Contact(self.dense, self.rows[which], at.take(which), *kept)
+        at, segment, branches = self.at.take(which), self.segment[which], self.branches[which]
+        return Contact(self.dense, self.rows[which], at, segment, branches)
 
     @property
     def tips(self) -> Array:
@@ -94,16 +90,11 @@ def contact_of(
     """Where and in which branch a trajectory is in contact."""
     rows = np.flatnonzero(dense.contact)
     at = fine.locate(dense.tips[rows], dense.outward[rows], deadline)
-    across = np.zeros((len(rows), 3))
-    if prepared.setup.task.turn is not None:
-        across = across_of(prepared.robot, dense.joints[rows], deadline)
-    branches = branches_of(prepared, dense, rows, across, deadline)
-    return Contact(dense, rows, at, trajectory.segment[dense.sample[rows]], across, branches)
+    branches = branches_of(prepared, dense, rows, deadline)
+    return Contact(dense, rows, at, trajectory.segment[dense.sample[rows]], branches)
 
 
-def branches_of(
-    prepared: PreparedScene, dense: Dense, rows: Index, across: Array, deadline: Deadline
-) -> Index:
+def branches_of(prepared: PreparedScene, dense: Dense, rows: Index, deadline: Deadline) -> Index:
     """The branch (c,) of each configuration, -1 if it is near no solution of a known branch.
 
     Joints are compared modulo full circles. A last joint that only turns the tool is ignored. Where
@@ -113,15 +104,12 @@ def branches_of(
     Args:
         dense: the trajectory with all configurations that are judged.
         rows: (c,) the configurations.
-        across: (c, 3) the tool's x axis, which matters if the setup gives the tool's turn.
     """
     found, compared = np.full(len(rows), -1), prepared.robot.task.joints
     several: dict[int, set[int]] = {}  # of rows with more than one branch
     for part in chunks(len(rows)):
         own = rows[part]
-        solutions, before = _solutions(
-            prepared, dense.tips[own], dense.axes[own], across[part], deadline
-        )
+        solutions, before = _solutions(prepared, dense, own, deadline)
         off = joint_steps(
             prepared.robot.slides[:compared],
             dense.joints[own, None, :compared],
@@ -153,16 +141,19 @@ def _steady(found: Index, several: dict[int, set[int]], stroke: Index) -> Index:
 
 
 def _solutions(
-    prepared: PreparedScene, tips: Array, axes: Array, across: Array, deadline: Deadline
+    prepared: PreparedScene, dense: Dense, rows: Index, deadline: Deadline
 ) -> tuple[Array, Index]:
-    """All solutions (k, branches, joints) of poses, and the number (k,) of their first branch.
+    """All solutions (k, branches, joints) of the poses that some configurations (k,) have.
+
+    And the number (k,) of their first branch.
 
     If the setup gives turns of the tool, branches are numbered turn by turn. Then a pose is solved
     with its own turn, and its branches are those of the nearest given turn.
     """
-    kinematics = prepared.arm.kinematics
+    kinematics, tips, axes = prepared.arm.kinematics, dense.tips[rows], dense.axes[rows]
     if not isinstance(kinematics, TurnedKinematics):
         return prepared.arm.inverse(tips, axes, deadline), np.zeros(len(tips), dtype=np.int64)
+    across = across_of(prepared.robot, dense.joints[rows], deadline)
     number = np.argmin(turns_off(kinematics.turn, tips, axes, across), axis=1)
     return kinematics.solve_pose(tips, axes, across), number * len(kinematics.own.branches)
 
@@ -198,14 +189,16 @@ def judge_contact(contact: Contact, direction: bool, faults: FaultList) -> Mask:
     return np.asarray(apart <= OFF_SURFACE)
 
 
-def judge_turn(turn: Turn, contact: Contact, direction: bool, faults: FaultList) -> None:
-    """Note where the tool has none of the turns that the setup gives.
-
-    Args:
-        direction: whether the task holds the tool against the normal.
-    """
-    wanted = -contact.at.normals if direction else contact.dense.axes[contact.rows]
-    off = turns_off(turn, contact.tips, wanted, contact.across).min(axis=1, initial=np.inf)
+def judge_turn(
+    prepared: PreparedScene, contact: Contact, deadline: Deadline, faults: FaultList
+) -> None:
+    """Note where the tool has none of the turns that the setup gives, if it gives any."""
+    robot, turn, dense = prepared.robot, prepared.setup.task.turn, contact.dense
+    if turn is None:
+        return
+    wanted = -contact.at.normals if robot.task.direction else dense.axes[contact.rows]
+    across = across_of(robot, dense.joints[contact.rows], deadline)
+    off = turns_off(turn, contact.tips, wanted, across).min(axis=1, initial=np.inf)
 
     def text(row: int) -> str:
         if np.isinf(off[row]):

@@ -8,15 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
-from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
-from cellcolor.data.trajectory import Trajectory
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.trajectory_checker.contact import Contact
+from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
 
 FAR, NEAR = 1.5, 0.75  # spacings; from a pass to what counts as covered, as closely covered
@@ -171,29 +170,44 @@ def _out_of_reach(
     return out
 
 
-def failing_places(
-    prepared: PreparedScene,
-    trajectory: Trajectory,
-    contact: Contact,
-    fine: FineMesh,
-    deadline: Deadline,
-) -> Mask:
-    """At which of the places that are stated to be left out (p,) no branch of the segment is valid.
+_AREA_SHARE = 1.25  # of the stated area; the planner measures on another mesh than the judge
 
-    A segment that is not driven at all has every branch.
+
+def judge_left_out(
+    prepared: PreparedScene,
+    contact: Contact,
+    reached: Reached,
+    faults: FaultList,
+    deadline: Deadline,
+) -> None:
+    """Note stated places that could have been covered, and stated areas that are not true.
+
+    A stated place is rightly left out if its nearest vertex is, or if the branches of its segment
+    fail there: the planner tests other points than the vertices of the fine mesh. A segment that is
+    not driven at all has every branch.
     """
-    failing = np.zeros(len(trajectory.left_out), dtype=bool)
-    if not len(failing):
-        return failing
-    places = np.array([part.place for part in trajectory.left_out])
-    nearest = cKDTree(fine.vertices).query(places)[1]
-    at = fine.locate(places, fine.normals[nearest], deadline)
-    stated = np.array([part.segment for part in trajectory.left_out])
-    every = np.arange(len(prepared.arm.kinematics.branches))
-    for number in np.unique(stated).tolist():
-        own = contact.branches[(contact.segment == number) & (contact.branches >= 0)]
-        asked = np.flatnonzero(stated == number)
-        failing[asked] = _out_of_reach(
-            prepared, at.points[asked], at.normals[asked], own if len(own) else every, deadline
-        )
-    return failing
+    left_out, fine, spacing = faults.trajectory.left_out, reached.fine, reached.spacing
+    total, out = reached.total, float(reached.areas[reached.right].sum())
+    stated = sum(part.area_m2 for part in left_out)
+    if left_out and out > _AREA_SHARE * stated + np.pi * spacing**2:
+        faults.add("claim", f"{stated:.6f} m² are announced as left out, and {out:.6f} m² are")
+    wrong = reached.uncovered
+    for part in left_out:
+        place = np.array(part.place)
+        if not 0 <= part.area_m2 <= total:
+            text = f"segment {part.segment}: {part.area_m2:.6f} m² left out of {total:.6f} m²"
+            faults.add("claim", text, place=place)
+        apart = np.linalg.norm(fine.vertices - place, axis=1)
+        at = int(np.argmin(apart))
+        if apart[at] > spacing:
+            text = f"segment {part.segment}: a place announced as left out is not on the surface"
+            faults.add("claim", text, place=place)
+        elif wrong[at]:
+            there = fine.locate(place[None], fine.normals[at][None], deadline)
+            own = contact.branches[(contact.segment == part.segment) & (contact.branches >= 0)]
+            branches = own if len(own) else np.arange(len(prepared.arm.kinematics.branches))
+            if not _out_of_reach(prepared, there.points, there.normals, branches, deadline)[0]:
+                text = (
+                    f"segment {part.segment}: announced as left out ({part.reason}), but reachable"
+                )
+                faults.add("claim", text, place=place)

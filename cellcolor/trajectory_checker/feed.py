@@ -66,25 +66,44 @@ def judge_feed(
     return tuple(found)
 
 
-def judge_transfers(
-    trajectory: Trajectory, dense: Dense, motion: Motion, faults: FaultList
+def judge_tool_speeds(
+    trajectory: Trajectory,
+    dense: Dense,
+    skip: Mask,
+    motion: Motion,
+    touches: bool,
+    faults: FaultList,
 ) -> None:
-    """Note where the tip is faster than the setup allows without contact."""
+    """Note where the tip is faster than the setup allows, in contact and between strokes.
+
+    Args:
+        skip: (k - 1,) steps that are known to be no motion.
+        touches: whether the tool touches the surface, or stands off it.
+    """
+    passed, contact = np.diff(trajectory.times), trajectory.contact
+    passed = np.where((passed > 0) & ~skip, passed, np.inf)
+    tips = dense.tips[dense.way == 0]
+    straight = np.linalg.norm(np.diff(tips, axis=0), axis=1)
+    together, touching = contact[1:] & contact[:-1], contact[1:] != contact[:-1]
+
+    def judge(most: float | None, asked: Mask, way: Array, doing: str) -> None:
+        if most is None:
+            return
+        speed = np.where(asked, way, 0.0) / passed
+        over = speed > most * (1 + SHARE_OVER_LIMIT) + POSE_ROUNDING / passed
+        faults.add_stretches(
+            "velocity",
+            over,
+            speed,
+            lambda k: f"the tool moves at {speed[k]:.4g} m/s {doing}, allowed: {most:.4g}",
+            tips,
+        )
+
+    judge(motion.speed_m_per_s, together, straight, "in contact")
+    most = motion.approach_speed_m_per_s if touches else None
+    judge(most, touching, straight, "where it touches or leaves the surface")
     most = motion.transfer_speed_m_per_s
-    if most is None:
-        return
-    passed = np.diff(trajectory.times)
-    moves = (passed > 0) & ~(trajectory.contact[1:] & trajectory.contact[:-1])
-    moves[[sample for sample in trajectory.unplanned if sample < len(moves)]] = False
-    speed = np.where(moves, _steps(trajectory, dense) / np.where(passed > 0, passed, 1.0), 0.0)
-    over = speed > most * (1 + SHARE_OVER_LIMIT) + POSE_ROUNDING / np.where(moves, passed, 1.0)
-    faults.add_stretches(
-        "velocity",
-        over,
-        speed,
-        lambda k: f"the tool moves at {speed[k]:.4g} m/s between strokes, allowed: {most:.4g}",
-        trajectory.points,
-    )
+    judge(most, ~together, _steps(trajectory, dense), "between strokes")
 
 
 def _steps(trajectory: Trajectory, dense: Dense) -> Array:

@@ -14,7 +14,7 @@ import trimesh
 from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, unit
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import TooLarge
 from cellcolor.frontend.parts.surface import Surface
@@ -79,7 +79,7 @@ class FineMesh:
     @cached_property
     def owner(self) -> Index:
         """(m,) the vertex of the given surface in whose barycentric part its centroid is."""
-        return self._owners(self.face, self._centroids)
+        return self._owners(self.face, self.mesh.triangles_center)
 
     @cached_property
     def near(self) -> csr_array:
@@ -97,28 +97,14 @@ class FineMesh:
         return csr_array((apart, both.indices, both.indptr), shape=(n, n))
 
     @cached_property
-    def _corners(self) -> Array:
-        """(m, 3, 3) where the corners of the small triangles are, m."""
-        return np.asarray(self.vertices[self.triangles])
-
-    @cached_property
-    def _centroids(self) -> Array:
-        return np.asarray(self._corners.mean(axis=1))
-
-    @cached_property
     def _tree(self) -> cKDTree:
-        return cKDTree(self._centroids)
+        return cKDTree(self.mesh.triangles_center)
 
     @cached_property
     def _radius(self) -> float:
         """No point of a small triangle is farther from its centroid, m."""
-        apart = np.linalg.norm(self._corners - self._centroids[:, None], axis=2)
+        apart = np.linalg.norm(self.mesh.triangles - self.mesh.triangles_center[:, None], axis=2)
         return float(apart.max())
-
-    @cached_property
-    def _facing(self) -> Array:
-        """(m, 3) unit normals of the small triangles; zero of those without any area."""
-        return _unit(trimesh.triangles.cross(self._corners))
 
     def locate(self, points: Array, outward: Array, deadline: Deadline = NEVER) -> Located:
         """The nearest points of the surface.
@@ -150,7 +136,7 @@ class FineMesh:
             asked = min(4 * asked, len(self.triangles))
         faces = self.face[triangle]
         given = self.surface.normals[self.surface.faces[faces]]
-        normals = _unit(np.einsum("kc,kcd->kd", self._shares(faces, at), given))
+        normals = unit(np.einsum("kc,kcd->kd", self._shares(faces, at), given))
         return Located(triangle, at, normals, self._owners(faces, at))
 
     def may_be_near(self, points: Array, distance: float) -> Mask:
@@ -165,12 +151,11 @@ class FineMesh:
         """For each point (k,): its distance, that of the last centroid tried, triangle, place."""
         far, candidates = self._tree.query(points, k=asked)
         far, candidates = far.reshape(-1, asked), candidates.reshape(-1, asked)
-        nearest = trimesh.triangles.closest_point(
-            self._corners[candidates.ravel()] / _UNIT, np.repeat(points, asked, axis=0) / _UNIT
-        )
+        corners = self.mesh.triangles[candidates.ravel()] / _UNIT
+        nearest = trimesh.triangles.closest_point(corners, np.repeat(points, asked, 0) / _UNIT)
         nearest = _UNIT * nearest.reshape(-1, asked, 3)
         apart = np.linalg.norm(nearest - points[:, None], axis=2)
-        facing = np.einsum("kqd,kd->kq", self._facing[candidates], outward) > 0
+        facing = np.einsum("kqd,kd->kq", self.mesh.face_normals[candidates], outward) > 0
         # Where none of those asked faces this way, the nearest one will do.
         apart = np.where(facing | ~facing.any(axis=1, keepdims=True), apart, apart + self.away)
         k, best = np.arange(len(points)), np.argmin(apart, axis=1)
@@ -208,9 +193,4 @@ def refined(surface: Surface, longest: float, deadline: Deadline) -> FineMesh:
         rows, faces, part = trimesh.remesh.subdivide_to_size(rows, faces, limit, return_index=True)
         face = face[part]
     mesh = trimesh.Trimesh(rows[:, :3], faces, process=False, validate=False)
-    return FineMesh(surface, mesh, _unit(rows[:, 3:]), face)
-
-
-def _unit(vectors: Array) -> Array:
-    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.where(lengths > 0, lengths, 1.0))
+    return FineMesh(surface, mesh, unit(rows[:, 3:]), face)

@@ -1,4 +1,4 @@
-"""Times and joints: order, jumps, limits, velocities of joints and tool, accelerations, jerks."""
+"""Times and joints: order, jumps, limits, velocities, accelerations, jerks."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from cellcolor.trajectory_checker.tolerances import (
     BOW_OF_SLIDE,
     CYCLE,
     JUMP,
-    POSE_ROUNDING,
     SHARE_OVER_LIMIT,
 )
 
@@ -27,24 +26,19 @@ class JointLimits:
     """What the joints keep to; each (joints,).
 
     Attributes:
-        lower, upper: rad, or m of a slide; None where the setup leaves limits and collisions out.
+        lower, upper: rad, or m of a slide; infinite where the setup leaves them and collisions out.
         velocity: rad/s or m/s.
         acceleration: rad/s² or m/s²; None where the setup has none.
         jerk: rad/s³ or m/s³; None where the setup has none.
-        tool_speed: of the tip in contact, m/s, no array; infinite where the setup has none.
         slides: which joints are prismatic.
-        touch_speed: of the tip on the step onto the surface and on that off it, m/s, no array;
-            infinite where the setup has none.
     """
 
-    lower: Array | None
-    upper: Array | None
+    lower: Array
+    upper: Array
     velocity: Array
     acceleration: Array | None
     jerk: Array | None
-    tool_speed: float
     slides: Mask
-    touch_speed: float = np.inf
 
     @property
     def units(self) -> list[str]:
@@ -73,14 +67,10 @@ def judge_joints(
     Returns:
         (k - 1,) which steps are jumps.
     """
-    steps, units = np.diff(trajectory.joints, axis=0), limits.units
+    steps = np.diff(trajectory.joints, axis=0)
     _judge_limits(trajectory, tips, limits, faults)
     together = trajectory.contact[1:] & trajectory.contact[:-1]
-    if not timed:
-        jumps = (np.abs(steps) > JUMP) & together[:, None]
-        _note_jumps(jumps, steps, trajectory.joint_names, units, tips, faults)
-        return np.asarray(jumps.any(axis=1))
-    passed = np.diff(trajectory.times)
+    passed = np.diff(trajectory.times) if timed else np.full(len(steps), np.inf)
     ascending = passed > 0
     faults.add_stretches(
         "time",
@@ -99,22 +89,18 @@ def judge_joints(
     fast = np.abs(velocity) > limits.velocity * (1 + SHARE_OVER_LIMIT) + rounding
     fast |= ~ascending[:, None]
     jumps = (np.abs(steps) > JUMP) & (fast | together[:, None])
-    _note_jumps(jumps, steps, trajectory.joint_names, units, tips, faults)
+    for sample, joint in np.argwhere(jumps).tolist():
+        by = f"{steps[sample, joint]:.4g} {limits.units[joint]}"
+        text = f"{trajectory.joint_names[joint]} moves by {by} to the next sample"
+        faults.add("jump", text, sample, sample + 1, joint=joint, place=tips[sample])
     fast &= ~jumps & ascending[:, None]
     speed = np.abs(velocity)
-    text = limits.text("moves at", speed, "s", limits.velocity)
-    faults.add_joint_stretches("velocity", fast, speed, text, tips)
+    said = limits.text("moves at", speed, "s", limits.velocity)
+    faults.add_joint_stretches("velocity", fast, speed, said, tips)
     known = ascending & ~jumps.any(axis=1)
-    _judge_accelerations(trajectory, known, tips, limits, faults)
-    _judge_jerks(trajectory, known, tips, limits, faults)
-    moves: Mask = ~np.any(jumps, axis=1)
-    moves[[sample for sample in trajectory.unplanned if sample < len(moves)]] = False
-    touching = trajectory.contact[1:] != trajectory.contact[:-1]
-    for steps_of, most, doing in (
-        (together, limits.tool_speed, "in contact"),
-        (touching, limits.touch_speed, "where it touches or leaves the surface"),
-    ):
-        _judge_tool_speed(tips, safe[:, 0], steps_of & moves, most, doing, faults)
+    if timed:
+        _judge_accelerations(trajectory, known, tips, limits, faults)
+        _judge_jerks(trajectory, known, tips, limits, faults)
     return np.asarray(jumps.any(axis=1))
 
 
@@ -122,8 +108,6 @@ def _judge_limits(
     trajectory: Trajectory, tips: Array, limits: JointLimits, faults: FaultList
 ) -> None:
     lower, upper, joints = limits.lower, limits.upper, trajectory.joints
-    if lower is None or upper is None:
-        return
     over = np.maximum(joints - upper, lower - joints)
 
     def beyond(k: int, joint: int) -> str:
@@ -139,35 +123,6 @@ def _judge_limits(
             f"is at {joints[k, joint]:.5f} {limits.units[joint]}, {beyond(k, joint)} beyond "
             f"its limits of {lower[joint]:.5f} and {upper[joint]:.5f}"
         ),
-        tips,
-    )
-
-
-def _note_jumps(
-    jumps: Mask,
-    steps: Array,
-    names: tuple[str, ...],
-    units: list[str],
-    tips: Array,
-    faults: FaultList,
-) -> None:
-    for sample, joint in np.argwhere(jumps).tolist():
-        by = f"{steps[sample, joint]:.4g} {units[joint]}"
-        text = f"{names[joint]} moves by {by} to the next sample"
-        faults.add("jump", text, sample, sample + 1, joint=joint, place=tips[sample])
-
-
-def _judge_tool_speed(
-    tips: Array, passed: Array, asked: Mask, most: float, doing: str, faults: FaultList
-) -> None:
-    """Note on which of the steps that are asked about the tip is too fast."""
-    speed = np.where(asked, np.linalg.norm(np.diff(tips, axis=0), axis=1) / passed, 0.0)
-    over = speed > most * (1 + SHARE_OVER_LIMIT) + POSE_ROUNDING / passed
-    faults.add_stretches(
-        "velocity",
-        over,
-        speed,
-        lambda k: f"the tool moves at {speed[k]:.4g} m/s {doing}, allowed: {most:.4g}",
         tips,
     )
 

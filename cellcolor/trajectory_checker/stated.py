@@ -1,4 +1,4 @@
-"""What a trajectory states of itself: points and normals, lift-offs, places that it leaves out.
+"""What a trajectory states of itself: points and normals, lift-offs.
 
 What a table of another planner leaves out is added from the scene's arm.
 """
@@ -7,18 +7,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.arrays import Array, Mask, stretches
+from cellcolor.arrays import Array, stretches, unit
 from cellcolor.data.trajectory import ExtraLiftOff, RepeatedStretch, Trajectory, TrajectoryTable
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.trajectory_checker.covered import Reached
 from cellcolor.trajectory_checker.dense import angles, poses_of, strokes_of
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import POSE_ANGLE, POSE_DISTANCE
-
-_AREA_SHARE = 1.25  # of the stated area; the planner measures on another mesh than the judge
 
 
 def judge_poses(
@@ -32,7 +29,10 @@ def judge_poses(
         tips, axes: (k, 3) what forward kinematics gives, m and unit vectors.
     """
     apart = np.linalg.norm(trajectory.points - tips, axis=1)
-    turned = _turned(robot, trajectory.normals, axes)
+    turned = np.zeros(len(axes))
+    if robot.task.direction:
+        lengths = np.linalg.norm(trajectory.normals, axis=1)
+        turned = np.where(lengths > 0, angles(unit(trajectory.normals), -axes), np.pi)
     wrong = (apart > POSE_DISTANCE) | (turned > POSE_ANGLE)
     faults.add_stretches(
         "pose",
@@ -44,15 +44,6 @@ def judge_poses(
         ),
         tips,
     )
-
-
-def _turned(robot: Robot, normals: Array, axes: Array) -> Array:
-    """How far stated normals (k, 3) are off those that tool axes give, (k,) in rad; pi for none."""
-    if not robot.task.direction:
-        return np.zeros(len(normals))
-    length = np.linalg.norm(normals, axis=1)
-    unit = normals / np.where(length > 0, length, 1.0)[:, None]
-    return np.where(length > 0, angles(unit, -axes), np.pi)
 
 
 def judge_lift_offs(trajectory: Trajectory, minimum: int | None, faults: FaultList) -> None:
@@ -82,40 +73,6 @@ def judge_lift_offs(trajectory: Trajectory, minimum: int | None, faults: FaultLi
         faults.add("lift-offs", text)
     elif needed > minimum:
         faults.add("lift-offs", f"{found}, {said}, and {minimum} are proved to be enough")
-
-
-def judge_left_out(
-    trajectory: Trajectory, reached: Reached, failing: Mask, faults: FaultList
-) -> None:
-    """Note stated places that could have been covered, and stated areas that are not true.
-
-    A stated place is rightly left out if its nearest vertex is, or if the segment's own branches
-    fail there: the planner tests other points than the vertices of the fine mesh.
-
-    Args:
-        failing: (p,) at which stated places the segment's branches fail.
-    """
-    if not trajectory.left_out:
-        return
-    spacing, vertices = reached.spacing, reached.fine.vertices
-    total, out = reached.total, float(reached.areas[reached.right].sum())
-    stated = sum(part.area_m2 for part in trajectory.left_out)
-    if out > _AREA_SHARE * stated + np.pi * spacing**2:
-        faults.add("claim", f"{stated:.6f} m² are announced as left out, and {out:.6f} m² are")
-    wrong = reached.uncovered
-    for part, fails in zip(trajectory.left_out, failing.tolist(), strict=True):
-        place = np.array(part.place)
-        if not 0 <= part.area_m2 <= total:
-            text = f"segment {part.segment}: {part.area_m2:.6f} m² left out of {total:.6f} m²"
-            faults.add("claim", text, place=place)
-        apart = np.linalg.norm(vertices - place, axis=1)
-        at = int(np.argmin(apart))
-        if apart[at] > spacing:
-            text = f"segment {part.segment}: a place announced as left out is not on the surface"
-            faults.add("claim", text, place=place)
-        elif wrong[at] and not fails:
-            text = f"segment {part.segment}: announced as left out ({part.reason}), but reachable"
-            faults.add("claim", text, place=place)
 
 
 _REASON = "stated in the table"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 STEP = 0.001  # m; between samples whose tips are farther apart, others are put in and tested
 STEP_ANGLE = math.radians(1.0)  # the same for the turn of the tool and of each joint that turns
@@ -27,24 +26,3 @@ TILT = math.radians(1.0)  # the tool's axis against the interpolated normal
 TURN = math.radians(1.0)  # the tool's x axis against the turn that the setup gives
 BRANCH = 0.01  # rad, m; configurations nearer than this to a branch's are its
 AT_VERTEX = 0.1  # rad, m; the same where tip and tool are off the vertex as far as a contact may be
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What a trajectory has to cover, and how often it may go over the same place.
-
-    Attributes:
-        least_covered_share: share of the reachable area within 1.5 times the spacing of a pass,
-            rightly left out area counted as covered.
-        least_closely_covered_share: the same for 0.75 times the spacing.
-        most_mean_visits: mean number of passes within half the spacing.
-        longest_repeated_spacings: how long a stretch may run along an earlier pass, in spacings.
-        silent: whether it cannot say what it leaves out, as a table cannot; then it may leave out
-            whatever no branch reaches.
-    """
-
-    least_covered_share: float = 0.99
-    least_closely_covered_share: float = 0.97
-    most_mean_visits: float = 1.3
-    longest_repeated_spacings: float = 3.0
-    silent: bool = False

@@ -20,8 +20,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.body import Body, Shape
 from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.reach.validity import Judge
-from cellcolor.frontend.reach.validity_tests import Workplace
+from cellcolor.frontend.reach.validity_tests import STANDARD_REASONS, Workplace
 from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList
@@ -223,33 +222,27 @@ def judge_validity(
         faults.add("unplanned", text, sample, place=at_samples[sample])
     contact = np.flatnonzero(dense.contact)
     names = prepared.judge.reason_names
-    reasons = _reasons(prepared, prepared.judge, dense.joints[contact], deadline)
+    reasons = _reasons(prepared, dense.joints[contact], deadline)
     _note(dense, contact, reasons, names, faults)
     # What lies between two samples with no planned move is known to be nothing.
     on_the_way = np.flatnonzero(~dense.contact & ~(unplanned[dense.sample] & (dense.way > 0)))
     setup = prepared.setup.varied(constraints={"force": False, "conditioning": False})
-    judge = Judge(replace(prepared, arm=replace(prepared.arm, setup=setup)))
-    joints = dense.joints[on_the_way]
-    reasons = _reasons(prepared, judge, joints, deadline, on_the_way=True)
-    _note(dense, on_the_way, reasons, judge.reason_names, faults)
+    away = replace(prepared, arm=replace(prepared.arm, setup=setup)).asking(STANDARD_REASONS)
+    reasons = _reasons(away, dense.joints[on_the_way], deadline, on_the_way=True)
+    _note(dense, on_the_way, reasons, names, faults)
 
 
 def _reasons(
-    prepared: PreparedScene,
-    judge: Judge,
-    joints: Array,
-    deadline: Deadline,
-    *,
-    on_the_way: bool = False,
+    prepared: PreparedScene, joints: Array, deadline: Deadline, *, on_the_way: bool = False
 ) -> NDArray[np.uint8]:
     """The code (k,) of the first test that each configuration fails; contacts by an own engine."""
-    names = judge.reason_names
+    names = prepared.judge.reason_names
     tests: dict[str, list[Pair]] = {}
     if prepared.setup.constraints.collision:
         tests = pairs_of(prepared)
         if on_the_way:
             tests["object collision"] += _through_object(prepared)
-    others = judge.only(frozenset(names) - tests.keys())
+    others = prepared.asking(frozenset(names) - tests.keys()).judge
     reasons = np.zeros(len(joints), dtype=np.uint8)
     for rows in chunks(len(joints)):
         found = others(joints[rows], deadline).reasons

@@ -60,16 +60,14 @@ class Format:
         version: the member ``version``; None for lines that have no such member, since they
             follow a document that has.
         kind: the class of its values, whose docstring says what the members are.
-        in_file: the class that has the members of files, if that is another one.
     """
 
     version: int | None
     kind: Any
-    in_file: type | None = None
 
 
 FORMATS = {
-    "labelled-surface-2": Format(2, surface.LabelledSurface, surface._SurfaceFile),
+    "labelled-surface-2": Format(2, surface.LabelledSurface),
     "instance-2": Format(2, instance.Instance),
     "solution-3": Format(3, solution.Solution),
     "scheme-3": Format(None, solution.SchemeLine),
@@ -104,8 +102,7 @@ def schema_text(file: str) -> str:
 
 
 def _format_schema(described: Format) -> dict[str, Any]:
-    adapter = adapter_of(described.in_file or described.kind)
-    schema = adapter.json_schema(schema_generator=_Untitled)
+    schema = adapter_of(described.kind).json_schema(schema_generator=_Untitled)
     members = {"format": {"const": described.kind.FORMAT}}
     title = described.kind.FORMAT
     if described.version is not None:

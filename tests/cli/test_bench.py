@@ -18,7 +18,7 @@ from guides import install
 from library import PAPER
 
 from cellcolor.lab.runs.table import Row, read_table
-from cellcolor.lab.workers import Task
+from cellcolor.processes import Task
 from cellcolor.solvers.registry import GROUP
 
 pytestmark = pytest.mark.second
@@ -199,7 +199,7 @@ class TestRun:
     @pytest.mark.parametrize(
         ("arguments", "message"),
         [
-            (["nothing*"], "nothing*: matches no family and no shipped name"),
+            (["nothing*"], "nothing*: is not a file, and nothing of that name is shipped"),
             (["library/none"], "library/none: matches no family of the library"),
             (["small", "--solver", "nobody"], "solver: there is no 'nobody'"),
             (["small", "--solver", "dfs@0"], "dfs@0: no number of workers after @"),

@@ -64,7 +64,7 @@ def test_wrong_input_is_refused(
         ((surface, plan, *LENGTHS, "-o", output, "--pattern", "zigzag"), "zigzag"),
         ((surface, plan, "--spacing-m", 0, "--tool-radius-m", 1, "-o", output), "spacing-m"),
         ((surface, plan, "--spacing-m", 1e-6, "--tool-radius-m", 1, "-o", output), "spacing_m"),
-        ((surface, plan, "--spacing-m", "inf", "--tool-radius-m", 1, "-o", output), "metres"),
+        ((surface, plan, "--spacing-m", "inf", "--tool-radius-m", 1, "-o", output), "spacing_m"),
     ]
     for arguments, complaint in cases:
         assert run("cover", *arguments) == 2

@@ -12,8 +12,8 @@ from dirty import DIRTY, obj
 
 import cellcolor
 from cellcolor.cli import main
-from cellcolor.door.starting import part_keys_of
-from cellcolor.frontend.parts.mesh_file import load_mesh
+from cellcolor.door.starting_part import part_keys_of
+from cellcolor.frontend.parts.mesh_file import MeshObject
 
 
 def stored(folder: Path, name: str) -> Path:
@@ -50,7 +50,7 @@ def test_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert json.loads(capsys.readouterr().out)["high_m"] == pytest.approx([2.54, 1.27, 0.762])
     for unit, meters in (("cm", "0.01"), ("in", "0.0254"), ("mm", "0.001"), ("m", "1.0")):
         looked = replace(cellcolor.inspect(file, unit=unit), refusal_after_repair=None)
-        assert part_keys_of(file, tmp_path, looked, None, None)[0]["meters_per_unit"] == meters
+        assert part_keys_of(file, tmp_path, looked, False, None)[0]["meters_per_unit"] == meters
 
 
 def test_a_repaired_mesh_is_one_that_scenes_take(
@@ -61,7 +61,7 @@ def test_a_repaired_mesh_is_one_that_scenes_take(
     text = capsys.readouterr().out
     assert "5 holes filled with 20 faces (+0.00293 m^2)" in text
     assert text.endswith(f"wrote {out}, meters_per_unit = 1\n")
-    surface = load_mesh(out, 1.0)
+    surface = MeshObject(file=str(out), meters_per_unit=1.0).surface()
     expected = cellcolor.repair(file, fill_holes_m=0.2)
     assert np.allclose(surface.vertices, expected.vertices, atol=1e-9)
     assert (surface.faces == expected.faces).all()

@@ -36,7 +36,6 @@ from cellcolor.errors import InputError
 from cellcolor.exports.registry import EXPORTS
 from cellcolor.frontend.scene import Scene
 from cellcolor.questions.answers import Explanation, RelaxedMinimum
-from cellcolor.questions.placements import PlacedMinimum, Placements
 
 OTHER_ARMS = {name for name in KINDS if name.endswith((".mod", ".src", ".ls"))}
 Capture = pytest.CaptureFixture[str]
@@ -66,9 +65,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     def motion(built: Any, *_: Any, **options: Any) -> Any:
         seen.update(options, motion=built.prepared.setup.motion, built=built)
         trajectory = replace(made.trajectory, unplanned=seen["unplanned"], extra_lift_offs=())
-        return SimpleNamespace(
-            paths=made.paths, measures=made.measures, trajectory=trajectory, cut_off=()
-        )
+        return SimpleNamespace(paths=made.paths, trajectory=trajectory, cut_off=())
 
     def verdict(*_: Any, **options: Any) -> TrajectoryVerdict:
         seen.update(options)
@@ -93,10 +90,8 @@ def test_all_files_are_there_and_belong_together(
     assert run("check", *painted) == 0
     assert asked["minimum_lift_offs"] == read["solution.json"].lift_offs == 1
     # The instance is what `build` would have made, its surface and side file beside it.
-    assert (
-        run("show", folder / "instance.json", "--view", "reasons", "-o", tmp_path / "reach.html")
-        == 0
-    )
+    reasons = ["--view", "reasons", "-o", tmp_path / "reach.html"]
+    assert run("show", folder / "instance.json", *reasons) == 0
     said = capsys.readouterr()
     assert "2 segments, 1 lift-off, optimal" in said.out
     assert f"wrote {len(list(folder.iterdir()))} files to {folder}" in said.out
@@ -154,7 +149,7 @@ def test_without_a_table_the_needed_key_is_named(
         (["--home-rad", "0,1,x,0,0,0"], "--home-rad"),
         (["--pattern", "zigzag"], "pattern"),
         (["--pattern", "back-and-forth:x"], "pattern"),
-        (["--time-limit", "-1"], "--time-limit"),
+        (["--time-limit", "-1"], "time_limit"),
     ],
 )
 def test_bad_options_are_one_line(
@@ -209,7 +204,7 @@ def out_of_time(laid: bool) -> Any:
 
     def motion(*_: Any, on_paths: Any, **__: Any) -> None:
         if laid:
-            on_paths(made.paths, made.measures)
+            on_paths(made.paths)
         raise OutOfTime("the time limit came first")
 
     return motion
@@ -252,9 +247,8 @@ def test_a_time_limit_before_the_painting_leaves_the_number(
         raise OutOfTime("the time limit came first")
 
     monkeypatch.setattr(cellcolor.motion.scene_painting, "paint_scene", painting)
-    with pytest.raises(
-        cellcolor.PlanOutOfTime, match="before the segments were painted"
-    ) as stopped:
+    cut = "before the segments were painted"
+    with pytest.raises(cellcolor.PlanOutOfTime, match=cut) as stopped:
         cellcolor.plan(scene)
     assert stopped.value.unfinished.solution.lift_offs == 1
     written = stopped.value.unfinished.save(tmp_path / "a")
@@ -268,7 +262,7 @@ def test_a_time_limit_before_the_painting_leaves_the_number(
 def test_a_question_without_an_answer_is_said_with_the_reason(
     scene: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """On the terminal and on the page, with exit code 3; the others are answered all the same."""
+    """On the terminal and on the page, with exit code 3; the others are answered."""
     asked: list[str] = []
 
     def question(name: str, end: Exception | Any) -> None:
@@ -281,26 +275,23 @@ def test_a_question_without_an_answer_is_said_with_the_reason(
         monkeypatch.setattr(cellcolor.door.planning, name, answer)
 
     minimum = RelaxedMinimum((), (), 2, 2, 1.0, 1.0, True)
-    here = PlacedMinimum((0.5, 0, 0, 0, 0, 0), 2, 1.0, True, 200)
     question("tradeoff", OutOfTime("the time limit came first"))
     question("explain", Explanation("wok", minimum, (), complete=False))
-    question("place", Placements("wok", 1.0, here, (), ()))
-    options = ["--ask", "place", "--ask", "tradeoff", "--ask", "explain"]
+    options = ["--ask", "explain", "--ask", "tradeoff"]
     assert run("plan", scene, "-o", tmp_path / "a", *options) == 3
-    assert asked == ["tradeoff", "explain", "place"]
+    assert asked == ["tradeoff", "explain"]
     said, page = capsys.readouterr().out, (tmp_path / "a" / "report.html").read_text("utf-8")
     for line in (
         "tradeoff: not answered, the time limit came first",
         "explain: answered in part, the time limit came first",
     ):
         assert line in said.splitlines() and line in page
-    assert "place: not" not in said
     question("tradeoff", cellcolor.tradeoff(stand_in().built))
     assert run("plan", scene, "-o", tmp_path / "b", "--ask", "tradeoff") == 0
     # A question that cannot be asked does not cost the plan.
-    question("place", InputError(None, "x", "the range is empty"))
-    assert run("plan", scene, "-o", tmp_path / "c", "--ask", "place") == 3
-    assert "place: not answered: x: the range is empty" in capsys.readouterr().out
+    question("explain", InputError(None, "x", "nothing can be relaxed"))
+    assert run("plan", scene, "-o", tmp_path / "c", "--ask", "explain") == 3
+    assert "explain: not answered: x: nothing can be relaxed" in capsys.readouterr().out
     assert (tmp_path / "c" / "trajectory.json").exists()
 
 
@@ -308,8 +299,8 @@ def test_questions_after_a_plan_that_is_not_ready_are_said(
     scene: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cellcolor.motion.plan, "plan_motion", out_of_time(laid=False))
-    assert run("plan", scene, "-o", tmp_path / "a", "--ask", "place") == 3
-    line = "place: not asked, the time limit came first"
+    assert run("plan", scene, "-o", tmp_path / "a", "--ask", "explain") == 3
+    line = "explain: not asked, the time limit came first"
     assert line in capsys.readouterr().err
     assert line in (tmp_path / "a" / "report.html").read_text("utf-8")
 

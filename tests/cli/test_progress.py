@@ -15,7 +15,7 @@ def test_without_a_terminal_a_line_now_and_then(
 ) -> None:
     monkeypatch.setattr(terminal, "_MINUTE", 0.05)
     said = ""
-    with terminal.stages_of(Path("folder/part.toml"), "building") as tell:
+    with terminal.at_work(Path("folder/part.toml"), "building") as tell:
         tell("validity between vertices")
         while "2 minutes" not in said:
             time.sleep(0.01)
@@ -26,6 +26,6 @@ def test_without_a_terminal_a_line_now_and_then(
 
 
 def test_what_is_quick_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
-    with terminal.stages_of(Path("part.toml"), "building") as tell:
+    with terminal.at_work(Path("part.toml"), "building") as tell:
         tell("preparation")
     assert capsys.readouterr().err == ""

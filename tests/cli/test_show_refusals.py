@@ -64,7 +64,8 @@ def test_files(tmp_path: Path, capsys: Capture) -> None:
 
 def test_instances(tmp_path: Path, capsys: Capture) -> None:
     out = tmp_path / "x.png"
-    refused([PAPER / "ring.json", "-o", out], capsys, "ring.json: surface", "--view", "graph")
+    graph = [PAPER / "ring.json", "-o", out, "--view", "cells"]
+    refused(graph, capsys, "ring.json: surface", "--view", "graph")
     instance = decompose(DRAWN, "none.surface.json")
     path = tmp_path / "i.json"
     path.write_text(instance.to_json())
@@ -123,19 +124,18 @@ def test_side_file_that_is_none(tmp_path: Path, capsys: Capture) -> None:
 
 @pytest.mark.parametrize(
     "arguments",
-    [
-        ["a.json"],
-        ["-o", "x.png"],
-        ["a.json", "b.json", "c.json", "-o", "x.png"],
-        ["a.json", "b.json", "--view", "graph", "-o", "x.png"],
-        ["a.toml", "--vertex", "1", "-o", "x.png"],
-        ["a.toml", "--vertex", "-1", "--branch", "0", "-o", "x.png"],
-        ["a.toml", "--branch", "0", "-o", "x.png"],
-    ],
+    [["a.json"], ["-o", "x.png"], ["a.json", "b.json", "c.json", "-o", "x.png"]],
     ids=" ".join,
 )
 def test_usage(arguments: list[object], capsys: Capture) -> None:
     refused(arguments, capsys, "cellcolor show: ")
+
+
+def test_options_that_do_not_go_together(tmp_path: Path, capsys: Capture) -> None:
+    path, out = saved(DRAWN, tmp_path), tmp_path / "x.png"
+    refused([path, path, "--view", "graph", "-o", out], capsys, "solution: the picture graph does")
+    refused([path, "--vertex", 1, "-o", out], capsys, "branch: the picture arm needs it")
+    refused([path, "--branch", 0, "-o", out], capsys, "branch: the picture cells does not take it")
 
 
 @pytest.mark.parametrize("options", [["x.svg"], ["x.html", "--view", "graph"]], ids=str)

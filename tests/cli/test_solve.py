@@ -163,10 +163,6 @@ class TestSolve:
         assert "ring.json" in err
         assert len(json_lines(out)) == 1
 
-    def test_too_many_workers(self, capsys: Capture) -> None:
-        assert run("solve", RING, "--workers", 1000) == 0
-        assert "1000 workers share" in capsys.readouterr().err
-
     def test_reason_for_the_bound(self, capsys: Capture) -> None:
         assert run("solve", RING) == 0
         # Cells 0 and 1 have red, and cell 2 in the middle is blue.

@@ -216,7 +216,7 @@ def test_files_and_values_give_one_verdict(tmp_path: Path) -> None:
 
 def test_a_labelled_surface_alone_knows_no_joints(tmp_path: Path) -> None:
     oracle = cellcolor.Oracle(drawn("AA AA", {"A": [0]}))
-    said = "joints: need the scene with its arm; this is only a labelled surface or an instance"
+    said = "format: only a scene (.toml) has an arm"
     for plan in (cellcolor.JointPlan(np.zeros((4, 6))), cellcolor.ContactPath(np.zeros((4, 6)))):
         with pytest.raises(InputError) as found:
             oracle.judge(plan)

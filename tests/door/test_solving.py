@@ -146,7 +146,8 @@ def test_wrong_options_are_refused(options: dict[str, Any], text: str) -> None:
 @pytest.mark.parametrize("source", [None, 3, 2.5, [1], object(), b"ring", PLAN])
 def test_what_cannot_be_solved_is_refused(source: Any) -> None:
     functions: list[Any] = [cellcolor.solve, cellcolor.show, cellcolor.decompose]
-    functions += [lambda s: cellcolor.check(s, "x.json"), cellcolor.proven_range]
+    solution = Solution.from_document(SOLUTION)
+    functions += [lambda s: cellcolor.check(s, solution), cellcolor.proven_range]
     for function in functions:
         with pytest.raises(InputError, match="must be a scene, a surface, an instance or a file"):
             function(source)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +18,9 @@ from scipy.spatial.transform import Rotation
 from shipped import ROBOTS
 
 import cellcolor
+import cellcolor.door.starting
 from cellcolor.data.candidate_table import VALID
-from cellcolor.door.starting import arm_of
-from cellcolor.door.starting_choices import mount_line
+from cellcolor.door.starting_arm import arm_of, mount_of
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.urdf import parse_urdf
@@ -103,8 +102,7 @@ def test_the_tool_is_turned_onto_the_last_axis(rpy: tuple[float, float, float], 
     assert usual in text
     turned = " ".join(map(repr, rpy))
     text = text.replace(usual, f'<origin xyz="{xyz}" rpy="{turned}"/>')
-    line = mount_line(parse_urdf(text, Path("arm.urdf")), "tool0", {})
-    mount = tomllib.loads(line).get("mount_rpy_rad", [0.0, 0.0, 0.0])
+    _, mount = mount_of(parse_urdf(text, Path("arm.urdf")), "tool0")
     tool = (Rotation.from_euler("xyz", rpy) * Rotation.from_euler("xyz", mount)).apply([0, 0, 1])
     outward = -1.0 if xyz.startswith("-") else 1.0
     assert np.allclose(tool, [outward, 0, 0], atol=2e-3)
@@ -126,7 +124,8 @@ def test_a_flange_measured_beside_the_last_axis_is_moved_onto_it(
 def test_an_arm_with_an_offset_wrist_is_known(tmp_path: Path) -> None:
     file = tmp_path / "arm.urdf"
     file.write_text(dh_arms.urdf("hc10"))
-    assert json.loads(arm_of(file, None, "tip", tmp_path, {}).keys["family"]) == "offset-wrist"
+    keys, _ = arm_of(file, None, "tip", tmp_path, {})
+    assert json.loads(keys["family"]) == "offset-wrist"
 
 
 @pytest.mark.second
@@ -211,12 +210,7 @@ def new(capsys: Capture, part: Path, arm: Path, folder: Path, *options: str) -> 
 
 @pytest.mark.parametrize(
     ("options", "flipped", "faces"),
-    first_is_quick(
-        (("--outside", "flip"), True, "up"),
-        ((), False, "down"),
-        (("--outside", "toward"), True, "up"),
-        (("--outside", "away"), False, "down"),
-    ),
+    first_is_quick((("--flip",), True, "up"), ((), False, "down")),
 )
 def test_a_sheet_wound_inside_out(
     options: tuple[str, ...],
@@ -270,7 +264,7 @@ def shell(folder: Path) -> Path:
 
 @pytest.mark.parametrize(
     ("options", "side"),
-    first_is_quick(((), "up"), (("--outside", "away"), "down"), (("--cover", "all"), "both")),
+    first_is_quick(((), "up"), (("--flip",), "down"), (("--cover", "all"), "both")),
 )
 def test_one_side_of_a_shell(
     options: tuple[str, ...], side: str, tmp_path: Path, capsys: Capture
@@ -308,8 +302,8 @@ def test_a_closed_part_has_its_outside(tmp_path: Path, capsys: Capture) -> None:
     trimesh.creation.icosphere(2, 100).export(tmp_path / "ball.stl")
     arm = ROBOTS / "ur5.urdf"
     folder = tmp_path / "new"
-    assert run("new", tmp_path / "ball.stl", arm, "-o", folder, "--outside", "flip") == 2
-    assert "--outside: the part is closed" in capsys.readouterr().err
+    assert run("new", tmp_path / "ball.stl", arm, "-o", folder, "--flip") == 2
+    assert "--flip: the part is closed" in capsys.readouterr().err
     assert not folder.exists()
 
 
@@ -350,7 +344,6 @@ def test_an_arm_on_a_rail_stands_still(
 @pytest.mark.parametrize(
     ("fix", "message"),
     [
-        ("rail_joint=0 --fix rail_joint=1", "--fix: rail_joint is given twice"),
         ("rail_joint=4", "4 is outside the joint's limits"),
         ("rail=0.4", "robot.fixed_joints.rail: no such joint"),
         ("rail_joint", "'rail_joint' is not JOINT=POSITION"),
@@ -408,6 +401,17 @@ def test_the_home_is_over_the_part_and_well_conditioned(plate: Path, tmp_path: P
     # Of the four postures that cover the plate, the one that does not lean back over the base.
     assert abs(home[0, 0]) < np.pi / 2
     assert any("100 mm over the part" in note for note in made.notes)
+
+
+@pytest.mark.second
+def test_without_room_over_the_part_the_arm_begins_anywhere(
+    plate: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cellcolor.door.starting, "home_over", lambda *_: None)
+    made = cellcolor.new(plate, ROBOTS / "ur5.urdf", tmp_path / "new")
+    assert any("none over the part is free" in note for note in made.notes)
+    prepared = prepare(made.scene)
+    assert home_of(prepared, motion_of(prepared)) is not None
 
 
 @pytest.mark.second

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -12,18 +11,16 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 import pytest
-import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 from read_programs import READERS, Program
-from scipy.interpolate import BPoly
 from scipy.spatial.transform import Rotation, Slerp
 from shipped import ROBOTS
 from stand_in import stand_in
+from waves import arm, driven, on
 
-from cellcolor.data.trajectory import Trajectory
 from cellcolor.errors import InputError
-from cellcolor.exports.interface import ArmAxes, PlannedMotion
+from cellcolor.exports.interface import PlannedMotion
 from cellcolor.exports.programs import ASIDE, BESIDE, PRESSED, WITHIN
 from cellcolor.exports.registry import exported, why_no_program
 from cellcolor.exports.samples import stretches
@@ -39,38 +36,6 @@ PROGRAMS = {
     "cellcolor.ls": "kr6",
 }
 FANUC_ON_KR6 = {"cellcolor.ls": {"controller": Controller(language="fanuc")}}
-
-
-@cache
-def arm(name: str) -> Robot:
-    return prepare_arm(setup_of(name)).robot
-
-
-def setup_of(name: str) -> Setup:
-    (setup, *_) = sorted(ROBOTS.glob(f"{name}*.toml"), key=lambda path: len(path.name))
-    return Setup.read(setup)
-
-
-def axes_of(name: str) -> ArmAxes:
-    return ArmAxes.of(arm(name), setup_of(name).robot.flange_link)
-
-
-def driven(
-    name: str, seed: int = 0, unplanned: tuple[int, ...] = (), **keys: object
-) -> PlannedMotion:
-    """A motion of an arm that nobody planned: waves, the tool on the surface now and then."""
-    random, robot = np.random.default_rng(seed), arm(name)
-    count = 60
-    times = np.cumsum(random.uniform(0.005, 0.2, count))
-    shape = random.uniform(0.1, 0.6, robot.joints), random.uniform(0.2, 1.0, robot.joints)
-    joints = shape[0] * np.sin(times[:, None] * shape[1] + random.uniform(0, 6, robot.joints))
-    contact = (np.arange(count) % 30 > 5) & (np.arange(count) % 30 < 26)
-    trajectory = Trajectory(
-        "waves", robot.joint_names, times, joints, random.normal(size=(count, 3)),
-        np.tile([0.0, 0.0, 1.0], (count, 1)), contact, np.where(contact, 0, -1), unplanned,
-    )  # fmt: skip
-    keys = {"controller": setup_of(name).controller} | keys
-    return PlannedMotion(trajectory, axes_of(name), **keys)
 
 
 def read(name: str, planned: PlannedMotion) -> Program:
@@ -122,8 +87,8 @@ def test_between_linear_moves_the_tip_is_where_it_was_judged(name: str, robot: s
     part = pin.SE3(pin.rpy.rpyToMatrix(0.3, -0.2, 1.0), np.array([0.5, -0.1, 0.2])).homogeneous
     planned = driven(robot, seed=3, part=part, force_n=9.0, **FANUC_ON_KR6.get(name, {}))
     found = read(f"{stem}_linear.{suffix}", planned)
-    axes, (own,), (moves,) = planned.axes, judged(planned, name), found.stretches
-    assert np.allclose(axes.flange @ found.tool, axes.tip, atol=2e-6)
+    (own,), (moves,) = judged(planned, name), found.stretches
+    assert np.allclose(planned.flange @ found.tool, planned.robot.tip, atol=2e-6)
     # Where the part is seen from: a controller of Universal Robots has its x axis backward.
     base = np.diag([-1.0, -1, 1, 1]) if suffix == "script" else np.eye(4)
     assert np.allclose(base @ found.part, part, atol=2e-5)
@@ -167,10 +132,9 @@ def tip_of(robot: Robot, joints: np.ndarray) -> np.ndarray:
 def on_the_wok(**keys: object) -> PlannedMotion:
     """Over the shipped wok, whose normal turns far in a stroke."""
     made = stand_in()
-    setup = made.prepared.setup
-    axes = ArmAxes.of(made.prepared.robot, setup.robot.flange_link)
+    own = on(made.prepared.robot, made.prepared.setup)
     planned = replace(made.trajectory, unplanned=())
-    return PlannedMotion(planned, axes, **{"force_n": 20.0} | keys)
+    return PlannedMotion(planned, **own, **{"force_n": 20.0} | keys)
 
 
 @pytest.mark.parametrize("name", ["cellcolor.script", "cellcolor_linear.script"])
@@ -317,9 +281,9 @@ def test_joint_angles_do_not_depend_on_the_mounting(rpy: str) -> None:
         f'<child link="base_link"/><origin xyz="0.1 0.2 1.5" rpy="{rpy}"/></joint></robot>'
     )
     hung = Setup.read(setup).varied(robot={"arm_urdf": text.replace("</robot>", mount)})
-    axes = ArmAxes.of(prepare_arm(hung).robot, hung.robot.flange_link)
+    own = on(prepare_arm(hung).robot, hung)
     upright = driven("ur5")
-    turned = replace(upright, axes=axes, part=axes.base)
+    turned = replace(upright, **own, part=own["base"])
     found, expected = read("cellcolor.script", turned), read("cellcolor.script", upright)
     for one, other in zip(found.stretches[0], expected.stretches[0], strict=True):
         assert np.array_equal(one.joints, other.joints)
@@ -359,15 +323,17 @@ def test_an_arm_gets_the_program_of_its_controller_and_no_other(name: str) -> No
 )
 def test_where_there_is_no_program_the_reason_is_said(robot: str, change: str, reason: str) -> None:
     """As for a URDF with another zero or another sense of rotation."""
-    axes, planned = axes_of(robot), driven(robot)
-    if change == "turned":
-        axes = replace(axes, directions=axes.directions * np.array([1, -1, 1, 1, 1, 1])[:, None])
-    if change == "moved":
-        axes = replace(axes, points=axes.points * [-1, 1, 1])
+    planned = driven(robot)
+    twisted, folded = planned.robot.axis.copy(), planned.robot.placement.copy()
+    twisted[1], folded[2:4, 0, 3] = -twisted[1], -folded[2:4, 0, 3]
+    changed = {
+        "turned": {"axis": twisted},
+        "moved": {"placement": folded},
+    }
     table = Controller(language="urscript") if change == "urscript" else planned.controller
     planned = replace(
         planned,
-        axes=None if change == "unknown" else axes,
+        robot=None if change == "unknown" else replace(planned.robot, **changed.get(change, {})),
         controller=None if change == "no table" else table,
     )
     assert reason in str(why_no_program(planned))
@@ -387,36 +353,3 @@ def test_where_there_is_no_program_the_reason_is_said(robot: str, change: str, r
 def test_a_table_that_cannot_be_used_is_refused(keys: dict[str, Any], fault: str) -> None:
     with pytest.raises(InputError, match=fault):
         Controller(**keys)
-
-
-@given(st.integers(0, 10**6), st.sampled_from([0.004, 0.0133, 0.1]))
-@examples(20)
-def test_a_fixed_step_follows_the_cubic_between_samples(seed: int, step: float) -> None:
-    planned = driven("ur5", seed)
-    trajectory = planned.trajectory
-    (own,), (judged,) = stretches(trajectory, step), stretches(trajectory)
-    assert np.allclose(np.diff(own.times), step)
-    assert 0 <= own.times[-1] - judged.times[-1] < step
-    ends = np.stack([judged.joints, judged.velocities], axis=1)
-    cubic = BPoly.from_derivatives(judged.times, ends)
-    inside = np.minimum(own.times, judged.times[-1])
-    assert np.allclose(own.joints, cubic(inside), atol=1e-9)
-    assert np.allclose(own.velocities, cubic.derivative()(inside), atol=1e-7)
-    straight = np.array([np.interp(inside, judged.times, j) for j in judged.joints.T]).T
-    assert own.beside == pytest.approx(np.abs(own.joints - straight).max(), abs=1e-9)
-    expected = np.interp(inside, judged.times, trajectory.contact) == 1
-    assert np.array_equal(own.contact, expected)
-
-
-def test_messages_have_the_fixed_step_and_accelerations() -> None:
-    planned = driven("ur5", step_s=0.01)
-    (message,) = yaml.safe_load_all(exported(planned)["joint_trajectory.yaml"])
-    times = [
-        point["time_from_start"]["sec"] * 10**9 + point["time_from_start"]["nanosec"]
-        for point in message["points"]
-    ]
-    assert set(np.diff(times)) == {10_000_000}
-    speeds = np.array([point["velocities"] for point in message["points"]])
-    faster = np.array([point["accelerations"] for point in message["points"]])
-    assert np.allclose(faster[1:-1], (speeds[2:] - speeds[:-2]) / 0.02, atol=1e-6)
-    assert not faster[[0, -1]].any()

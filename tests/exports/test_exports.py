@@ -8,12 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.interpolate import BPoly
 from stand_in import stand_in
+from waves import driven
 
 from cellcolor.data.trajectory import Trajectory, read_trajectory_csv
 from cellcolor.errors import InputError
 from cellcolor.exports.interface import PlannedMotion
-from cellcolor.exports.registry import EXPORTS
+from cellcolor.exports.registry import EXPORTS, exported
+from cellcolor.exports.samples import stretches
+from examples import examples
 
 
 @pytest.fixture(scope="module")
@@ -75,3 +81,36 @@ def test_a_trajectory_without_samples_is_a_file_without_messages(planned: Planne
     made = Trajectory("empty", ("a",), [], np.empty((0, 1)), none, none, [], [])
     text = content("joint_trajectory.yaml", replace(planned, trajectory=made))
     assert list(yaml.safe_load_all(text)) == []
+
+
+@given(st.integers(0, 10**6), st.sampled_from([0.004, 0.0133, 0.1]))
+@examples(20)
+def test_a_fixed_step_follows_the_cubic_between_samples(seed: int, step: float) -> None:
+    planned = driven("ur5", seed)
+    trajectory = planned.trajectory
+    (own,), (judged,) = stretches(trajectory, step), stretches(trajectory)
+    assert np.allclose(np.diff(own.times), step)
+    assert 0 <= own.times[-1] - judged.times[-1] < step
+    ends = np.stack([judged.joints, judged.velocities], axis=1)
+    cubic = BPoly.from_derivatives(judged.times, ends)
+    inside = np.minimum(own.times, judged.times[-1])
+    assert np.allclose(own.joints, cubic(inside), atol=1e-9)
+    assert np.allclose(own.velocities, cubic.derivative()(inside), atol=1e-7)
+    straight = np.array([np.interp(inside, judged.times, j) for j in judged.joints.T]).T
+    assert own.beside == pytest.approx(np.abs(own.joints - straight).max(), abs=1e-9)
+    expected = np.interp(inside, judged.times, trajectory.contact) == 1
+    assert np.array_equal(own.contact, expected)
+
+
+def test_messages_have_the_fixed_step_and_accelerations() -> None:
+    planned = driven("ur5", step_s=0.01)
+    (message,) = yaml.safe_load_all(exported(planned)["joint_trajectory.yaml"])
+    times = [
+        point["time_from_start"]["sec"] * 10**9 + point["time_from_start"]["nanosec"]
+        for point in message["points"]
+    ]
+    assert set(np.diff(times)) == {10_000_000}
+    speeds = np.array([point["velocities"] for point in message["points"]])
+    faster = np.array([point["accelerations"] for point in message["points"]])
+    assert np.allclose(faster[1:-1], (speeds[2:] - speeds[:-2]) / 0.02, atol=1e-6)
+    assert not faster[[0, -1]].any()

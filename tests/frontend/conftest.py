@@ -7,9 +7,9 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from assembled import load_robot
 from shipped import ROBOTS, WOK, with_keys, wok_file
 
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import UrGeometry, ur_geometry
 from cellcolor.frontend.scene import Scene

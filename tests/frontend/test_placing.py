@@ -11,7 +11,6 @@ from shipped import shipped
 from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import StageClock, build_prepared
-from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.prepared import PreparedScene, prepare
 
 SHIFTS = st.floats(-0.2, 0.2)
@@ -36,10 +35,10 @@ def test_a_part_elsewhere_is_the_scene_prepared_there(
         anew = prepare(there)
     except InputError as error:
         with pytest.raises(InputError) as found:
-            wok.at(Placement(**place))
+            wok.at(there)
         assert (found.value.field, found.value.message) == (error.field, error.message)
         return
-    moved = wok.at(Placement(**place))
+    moved = wok.at(there)
     assert moved.scene == there
     one, other = (build_prepared(each, StageClock(NEVER, None)) for each in (anew, moved))
     assert np.array_equal(one.surface.vertices, other.surface.vertices)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
@@ -17,9 +18,18 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.setup import Setup
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.motion import courses
-from cellcolor.motion.courses import Course, laid_out
-from cellcolor.motion.following import DISTANCE, Followed, Samples, bowed, even_places, sampled
+from cellcolor.motion import following
+from cellcolor.motion import segment as module
+from cellcolor.motion.following import (
+    DISTANCE,
+    Followed,
+    Samples,
+    bowed,
+    even_places,
+    normals_at,
+    off_way,
+    sampled,
+)
 from cellcolor.tool_paths.cover import cover
 from cellcolor.tool_paths.registry import PATTERNS
 
@@ -29,7 +39,7 @@ CORNERS = np.array([[-0.05, -0.01, 0.0], [0.05, -0.01, 0.0], [0.0, 0.05, 0.0]])
 MOST = 0.5  # rad; docs/judging-trajectories.md: in contact, a longer step is a jump
 
 
-def course(passed_within: float, monkeypatch: pytest.MonkeyPatch) -> Course:
+def course(passed_within: float, monkeypatch: pytest.MonkeyPatch) -> tuple[Samples, Followed]:
     """Across a triangle, with a joint that turns by half a circle, most of it within a length."""
 
     class Judge:
@@ -43,33 +53,31 @@ def course(passed_within: float, monkeypatch: pytest.MonkeyPatch) -> Course:
         reasons = np.zeros(len(samples), dtype=np.uint8)
         return Followed(angle, reasons, np.zeros(len(samples) - 1, dtype=bool))
 
-    monkeypatch.setattr(courses, "follow", follow)
-    monkeypatch.setattr(courses, "bowed", lambda _robot, joints: np.zeros(len(joints) - 1, bool))
-    monkeypatch.setattr(courses, "off_way", lambda *_: False)
-    monkeypatch.setattr(courses, "unwound", lambda joints, _: joints)
-    monkeypatch.setattr(courses, "joint_space", lambda _: None)
+    monkeypatch.setattr(module, "follow", follow)
+    monkeypatch.setattr(module, "bowed", lambda _robot, joints: np.zeros(len(joints) - 1, bool))
+    monkeypatch.setattr(module, "off_way", lambda *_: False)
+    monkeypatch.setattr(module, "unwound", lambda joints, _: joints)
+    monkeypatch.setattr(module, "joint_space", lambda _: None)
     up = np.tile([0.0, 0.0, 1.0], (3, 1))
     ends = np.array([[-0.0301, 0.0, 0.0], [0.0302, 0.0, 0.0]])
     path = ToolPath(0, 0, ends, up[:2], np.array([0]))
     mesh = TriangleMesh(CORNERS, np.array([[0, 1, 2]]))
-    laid: Any = SimpleNamespace(paths=SimpleNamespace(paths=(path,)), along_border=(None,))
     robot = SimpleNamespace(slides=np.zeros(1, dtype=bool))
-    prepared: Any = SimpleNamespace(judge=Judge(), robot=robot)
-    surface: Any = SimpleNamespace(mesh=mesh)
-    refusals: Any = SimpleNamespace(add=lambda *_: None)
-    _, (found,) = laid_out(prepared, surface, up, 0, lambda: laid, refusals, NEVER)
-    return found
+    segments = SimpleNamespace(surface=SimpleNamespace(mesh=mesh), normals=up)
+    prepared = SimpleNamespace(judge=Judge(), robot=robot)
+    ground: Any = SimpleNamespace(prepared=prepared, segments=segments, deadline=NEVER)
+    return module.course(ground, path, even_places(path), 0)
 
 
 @pytest.mark.parametrize("passed_within", [0.1, 0.003, 0.0005, 0.0001])
 def test_a_fast_joint_gets_samples_so_close_that_no_step_is_a_jump(
     passed_within: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    found = course(passed_within, monkeypatch)
-    x, angles = found.samples.points[:, 0], found.followed.joints[:, 0]
+    samples, followed = course(passed_within, monkeypatch)
+    x, angles = samples.points[:, 0], followed.joints[:, 0]
     assert np.allclose(np.tan(angles) * passed_within, x)
     assert np.abs(np.diff(angles)).max() < MOST
-    assert not found.followed.torn.any()
+    assert not followed.torn.any()
     assert x[0] == -0.0301 and x[-1] == 0.0302
     steps = np.diff(x)
     assert (steps > 0).all() and (steps <= DISTANCE).all()
@@ -100,6 +108,23 @@ def test_steps_that_bow_off_their_way_are_told() -> None:
     assert 50 < told.sum() < 350
 
 
+@pytest.mark.parametrize(("aside", "told"), [(0.0, False), (2e-5, False), (5e-5, True)])
+def test_the_tool_is_compared_with_the_normal_where_its_tip_is(
+    aside: float, told: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Across a sharp edge 6 mm wide, on which the normal turns by 90 degrees."""
+    mesh = TriangleMesh(np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.006, 0]]), np.array([[0, 1, 2]]))
+    normals = np.array([[0.0, -1, 1], [0.0, -1, 1], [0.0, 1, 1]]) / np.sqrt(2)
+    middle = np.array([[0.02, 0.003, 0.0]])
+    tip = middle + np.array([0.0, aside, 0.0])
+    pose = SimpleNamespace(tip=tip, tool_axis=np.array([[0.0, 0.0, -1.0]]))
+    monkeypatch.setattr(following, "forward", lambda *_: pose)
+    robot: Any = SimpleNamespace(task=SimpleNamespace(direction=True))
+    # 20 µm aside the normal is 0.4 degrees off, 50 µm aside 0.95; 0.6 may be.
+    normals_of = partial(normals_at, mesh, normals, np.array([0]))
+    assert off_way(robot, np.zeros((1, 6)), middle, normals_of).tolist() == [told]
+
+
 @pytest.mark.parametrize("beyond", [0.0, 1e-6, 2e-5])
 def test_no_even_sample_is_just_beside_one_that_is_asked_for(beyond: float) -> None:
     """A step of micrometers takes a millisecond, and so would look like a stop."""
@@ -107,11 +132,11 @@ def test_no_even_sample_is_just_beside_one_that_is_asked_for(beyond: float) -> N
     points = np.stack([x, 0 * x, 0 * x], axis=1)
     path = ToolPath(0, 0, points, np.tile([0.0, 0.0, 1.0], (3, 1)), np.zeros(2, dtype=np.int64))
     places = even_places(path, np.array([1]))
-    samples = sampled(path, places)
-    steps = np.diff(samples.points[:, 0])
+    samples, _ = sampled(path, places)
+    steps = np.diff(samples[:, 0])
     assert steps.min() > 0.9e-3 and steps.max() <= DISTANCE
-    assert np.abs(samples.points[:, 0] - x[1]).min() < 1e-12
-    assert samples.points[-1, 0] == pytest.approx(x[2])
+    assert np.abs(samples[:, 0] - x[1]).min() < 1e-12
+    assert samples[-1, 0] == pytest.approx(x[2])
 
 
 @pytest.mark.parametrize("pattern", PATTERNS)
@@ -126,10 +151,8 @@ def test_samples_go_round_the_ends_of_cracks(pattern: str, seed: int) -> None:
     covered = cover(painting, pattern=pattern, spacing_m=0.05, tool_radius_m=0.05)
     mesh = painting.surface.mesh
     for path, corners in zip(covered.paths.paths, covered.along_border, strict=True):
-        samples = sampled(path, even_places(path, corners))
-        owners = mesh.corners[
-            samples.faces, mesh.shares(samples.faces, samples.points).argmax(axis=1)
-        ]
+        points, faces = sampled(path, even_places(path, corners))
+        owners = mesh.corners[faces, mesh.shares(faces, points).argmax(axis=1)]
         steps = {(min(a, b), max(a, b)) for a, b in pairwise(owners.tolist()) if a != b}
         assert len(steps) > 20
         assert not steps & set(cracks)

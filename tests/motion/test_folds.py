@@ -11,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.deadline import NEVER
+from cellcolor.mesh.dividing import small_triangles, unit_everywhere
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.motion.small_triangles import FOLDED, ArmRefusals, CornerStates, SmallTriangles
+from cellcolor.motion.small_triangles import FOLDED, ArmRefusals, CornerStates
 
 POINTS = np.array([[0, 0, 0], [1, 0, 0], [0.5, 1, 0], [0.5, -0.3, 0]]) * 0.02
 FACES = np.array([[0, 1, 2], [0, 3, 1]])
@@ -21,14 +22,12 @@ SHARES = st.tuples(st.floats(0, 1), st.floats(0, 1)).map(lambda two: sorted((0.0
 
 def refusals(normals: np.ndarray, direction: bool) -> ArmRefusals:
     """Of a flat square in one segment, before an arm that can do everything."""
-    small = SmallTriangles.of(TriangleMesh(POINTS, FACES), normals, np.zeros(len(POINTS), int))
-    count = len(small.corners)
-    nothing: Any = None
-    states = CornerStates(
-        small,
-        np.zeros((count, 3, 1)), np.zeros((count, 3), dtype=np.uint8), nothing,
-        np.zeros(count, dtype=bool),
-    )  # fmt: skip
+    mesh = TriangleMesh(POINTS, FACES)
+    fine, side = small_triangles(mesh)
+    joints, reasons = np.zeros((len(side), 3, 1)), np.zeros((len(side), 3), dtype=np.uint8)
+    zero, wound = np.zeros(len(side), int), np.zeros(len(side), dtype=bool)
+    everywhere = unit_everywhere(mesh, normals)
+    states = CornerStates(mesh, fine, everywhere, side, zero, joints, reasons, wound)
 
     class Judge:
         reason_names = ("valid", "no", "joint limits")

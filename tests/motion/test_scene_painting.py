@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from painted import assert_whole, random_solution
+from painted import assert_whole, mean_cost, random_solution
 from shipped import shipped
 
 from cellcolor.arrays import unit
@@ -15,15 +15,16 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER
 from cellcolor.decomposition import decomposition_of
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.arm.kinematics import task_determinants
+from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.lab.families.surfaces import voronoi
 from cellcolor.motion import scene_painting
-from cellcolor.motion.following import Samples, with_normals_of
+from cellcolor.motion.following import normals_at
 from cellcolor.motion.posture import color_costs
 from cellcolor.motion.scene_painting import ScenePainting, paint_scene
+from cellcolor.painting.paint import paint
 from cellcolor.painting.refined import interpolated, unrefined
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
@@ -68,8 +69,9 @@ def test_a_solved_scene_is_painted_as_proved(name: str) -> None:
     assert found.painted.minima == (solution.segments,) and found.painted.refused == ()
     assert_whole(built.surface, found.painted, solution)
     assert reaches(built.prepared, found)
-    borders = found.painted.borders
-    assert borders.after.cost < borders.before.cost
+    cost = color_costs(built.robot, built.verdicts)[:, np.array(built.color_branch)]
+    drawn = paint(built.surface, decomposition, solution)
+    assert mean_cost(found.painted, cost) < mean_cost(drawn, cost)
     assert told == ["painting", "moving borders"]
 
 
@@ -111,7 +113,8 @@ def test_costs_by_hand(wok: BuildResult) -> None:
     cost = color_costs(robot, candidates)
     rows, branches = np.nonzero(candidates.valid)
     joints = candidates.configurations[rows, branches]
-    determinants = task_determinants(robot, joints, None)
+    poses = forward(robot, joints)
+    determinants = task_determinant(*tip_jacobian(poses), poses.tool_axis, robot.task)
     for row, branch, q, determinant in zip(rows, branches, joints, determinants, strict=True):
         room = [
             max(
@@ -157,7 +160,7 @@ def test_normals_between_vertices_are_those_that_the_judge_takes(seed: int) -> N
     shares = rng.dirichlet(np.ones(3), 200)
     points = np.einsum("ki,kij->kj", shares, finer.mesh.points[finer.mesh.corners[faces]])
     between = interpolated(finer.between, normals)
-    found = with_normals_of(Samples(points, points, faces), finer.mesh, between).normals
+    found = normals_at(finer.mesh, between, faces, points)
     fine = refined(Surface(surface.vertices, np.array(surface.faces), normals), 1e9, NEVER)
     facing = np.tile(surface.mesh.triangle_normals[0], (200, 1))
     assert found == pytest.approx(fine.locate(points, facing).normals, abs=1e-9)

@@ -10,7 +10,6 @@ from motions import ring_scene
 import cellcolor
 from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.motion.windings import Steps, walls_of
-from cellcolor.tool_paths.measures import in_all
 
 pytestmark = pytest.mark.second
 
@@ -30,7 +29,7 @@ def test_the_chosen_path_stays_in_the_limits_without_a_lift_off(
     assert (trajectory.joints >= robot.lower).all()
     assert (trajectory.joints <= robot.upper).all()
     assert np.ptp(trajectory.joints[trajectory.contact][:, 0]) > 1.8 * np.pi  # nearly all round
-    assert in_all(list(ring.measures)).covered_wide > 0.99
+    assert ring.verdict.covered.covered_share > 0.99
 
 
 def test_cracks_of_the_color_open_the_ring_and_do_not_part_it(ring: cellcolor.PlannedScene) -> None:

@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.door import oracle as door
-from cellcolor.door.oracle import KeepingOracle
+from cellcolor.door.oracle import Oracle
 from cellcolor.errors import InputError
 from cellcolor.lab.families import voronoi
 from cellcolor.oracle import Proof, ProvenRange
@@ -45,8 +45,9 @@ CUT = ("truncated", "a bit", "a digit", "deep")
 KINDS = ("values", "a member", "all bounds", "fewer segments", "another surface's", *CUT)
 
 
-def oracle(folder: Path) -> KeepingOracle:
-    return KeepingOracle(voronoi(0, "disc", 8, 6, 4), 20.0, folder)
+def oracle(folder: Path, seed: int = 0) -> Oracle:
+    surface = voronoi(seed, "disc", 8, 6, 4)
+    return Oracle(surface, time_limit=20.0, cache=folder)
 
 
 def name_of(folder: Path) -> str:
@@ -92,7 +93,7 @@ def test_a_folder_is_named_and_nothing_is_left_behind(tmp_path: Path) -> None:
 def honest(seed: int) -> tuple[int, str, str]:
     """The minimum of a surface, and name and content of the file that its proof leaves."""
     with TemporaryDirectory() as name:
-        kept = KeepingOracle(voronoi(seed, "disc", 8, 6, 4), 20.0, Path(name))
+        kept = oracle(Path(name), seed)
         assert kept.bounds.exact
         (file,) = Path(name).iterdir()
         return kept.bounds.upper, file.name, file.read_text(encoding="utf-8")

@@ -6,13 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
+from assembled import load_robot
 from library import INSTANCES
 from numpy.typing import NDArray
 from pages import page_data, show, small_wok, solids
+from pinocchio_reading import geometry_of
 from shipped import shipped
 
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.pictures.arm import draw_arm, surroundings
@@ -68,11 +69,12 @@ def test_arm(tmp_path: Path) -> None:
     robot = load_robot(
         robots / "ur5.urdf", "wrist_3_link", robots / "polishing_tool.urdf", "tool_tip"
     )
-    data, shapes = robot.model.createData(), robot.geometry.createData()
+    data, geometry = robot.model.createData(), geometry_of(robot)
+    shapes = geometry.createData()
     q = result.configurations[vertex, branch]
-    pin.updateGeometryPlacements(robot.model, data, robot.geometry, shapes, q)
+    pin.updateGeometryPlacements(robot.model, data, geometry, shapes, q)
     depth: dict[str, list[NDArray[np.float64]]] = {}
-    for number, shape in enumerate(robot.geometry.geometryObjects):
+    for number, shape in enumerate(geometry.geometryObjects):
         link = robot.model.frames[shape.parentFrame].name
         pose = shapes.oMg[number]
         local = (found[link] - pose.translation) @ pose.rotation

@@ -11,8 +11,6 @@ from typing import Any
 import numpy as np
 import pytest
 from commands import json_lines, run
-from hypothesis import given
-from hypothesis import strategies as st
 from shipped import SCENES, shipped
 
 import cellcolor
@@ -20,17 +18,15 @@ from cellcolor.deadline import NEVER
 from cellcolor.frontend import BuildResult, Scene, build_surface
 from cellcolor.frontend.build import StageClock, build_prepared
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.reach import validity
+from cellcolor.frontend.reach import validity_tests
 from cellcolor.frontend.relaxing import (
     TOOL_LENGTH,
     Relaxation,
     built_asking_less,
-    built_asking_more,
     relaxations_of,
     without,
 )
 from cellcolor.questions.answers import Explanation, RelaxedMinimum
-from examples import examples
 
 pytestmark = pytest.mark.second
 
@@ -115,11 +111,11 @@ def from_scratch(
     for one in what:
         if one.key != "object":
             scene = changed(scene, one)
-    tests = list(validity.STANDARD_TESTS)
+    tests = list(validity_tests.STANDARD_TESTS)
     if "object" in keys:  # no file says that the part may be hit
         tests = [one for one in tests if one.name != "object collision"]
     with monkeypatch.context() as patch:
-        patch.setattr(validity, "STANDARD_TESTS", tuple(tests))
+        patch.setattr(validity_tests, "STANDARD_TESTS", tuple(tests))
         return build_surface(scene)
 
 
@@ -156,26 +152,6 @@ def test_each_row_is_that_of_the_scene_with_the_thing_changed(
         assert same_answers(found, from_scratch(scene, [one], monkeypatch)), one
         changing += not np.array_equal(found.verdicts.valid, before.verdicts.valid)
     assert changing >= 3
-
-
-@examples(5)
-@given(data=st.data(), wider=st.floats(0.01, 1.0))
-def test_what_is_known_of_a_freer_scene_changes_nothing_of_what_is_found(
-    data: st.DataObject, wider: float
-) -> None:
-    """Things put back one or several at a time, an obstacle elsewhere too."""
-    prepared = prepare(scene_of("wok_obstacle"))
-    clock = StageClock(NEVER, None)
-    things = [one for one in relaxations_of(prepared) if one.reasons is not None]
-    back = data.draw(st.lists(st.sampled_from(things), min_size=1, max_size=3, unique=True))
-    gone = [one for one in things if one not in back]
-    some = [one.by(wider) for one in back if one.most] if data.draw(st.booleans()) else []
-    stricter = without(prepared, [*gone, *some])
-    reasons = frozenset[str]().union(*(one.reasons or () for one in back))
-    found = built_asking_more(
-        stricter, build_prepared(without(prepared, things), clock), reasons, clock
-    )
-    assert same_answers(found, build_prepared(stricter, clock))
 
 
 @pytest.mark.parametrize(("segments", "said"), [(1, True), (3, False)])

@@ -7,9 +7,9 @@ import dataclasses
 import dh_arms
 import numpy as np
 import pinocchio as pin
+from assembled import load_robot
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import GIVEN_TURN, Robot
 from cellcolor.frontend.arm.urdf import parse_urdf
 

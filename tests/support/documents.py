@@ -6,6 +6,15 @@ import copy
 from collections.abc import Callable
 from typing import Any
 
+from cellcolor.data import value
+from cellcolor.data.instance import Instance
+from cellcolor.data.plan import Plan
+from cellcolor.data.solution import Solution
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.tool_paths import ToolPaths
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+
 Document = dict[str, Any]
 
 SURFACE: Document = {
@@ -163,7 +172,7 @@ VERDICT: Document = {
 }
 
 
-Change = Callable[[Document], None]
+Change = Callable[[Document], object]
 
 
 def broken(document: Document, change: Change) -> Document:
@@ -214,4 +223,14 @@ TOOL_PATHS: dict[str, Any] = {
             "faces": [0, 0],
         }
     ],
+}
+
+KINDS: dict[type[value.Document], Document] = {
+    LabelledSurface: SURFACE,
+    Instance: INSTANCE,
+    Solution: SOLUTION,
+    Plan: PLAN,
+    Trajectory: TRAJECTORY,
+    TrajectoryVerdict: VERDICT,
+    ToolPaths: TOOL_PATHS,
 }

@@ -32,7 +32,9 @@ def faults_of(
         None if limit is None else np.full(count, limit) for limit in (velocity, acceleration, jerk)
     )
     assert fastest is not None
-    limits = JointLimits(None, None, fastest, most, change, np.inf, np.zeros(count, bool))
+    everywhere = np.full(count, np.inf)
+    slides = np.zeros(count, bool)
+    limits = JointLimits(-everywhere, everywhere, fastest, most, change, slides)
     found = FaultList(drive, timed=True)
     judge_joints(drive, np.asarray(drive.points), limits, True, found)
     return set(found.counts)

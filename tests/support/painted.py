@@ -147,6 +147,14 @@ def random_solution(instance: Instance, strands: int, rng: random.Random) -> Sol
     )  # fmt: skip
 
 
+def mean_cost(painted: Painted, cost: np.ndarray) -> float:
+    """Of the painted area, of costs (m, colors) at the vertices that were painted."""
+    own = np.flatnonzero(painted.segment_of >= 0)
+    colors = [color for color in painted.plan.vertex_colors if color is not None]
+    each = cost[painted.stands_for[own], colors]
+    return float(np.average(each, weights=painted.surface.vertex_areas[own]))
+
+
 def assert_whole(surface: LabelledSurface, painted: Painted, solution: Solution) -> None:
     """Every segment is one connected set of vertices in a color that all of them have.
 

@@ -24,7 +24,6 @@ from cellcolor.door.subject import Result
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.painting.paint import Painted
-from cellcolor.tool_paths.measures import PathMeasures
 from cellcolor.trajectory_checker.check import check_trajectory
 
 SPEED = 0.5  # m/s, so that it is short
@@ -51,13 +50,6 @@ class StandIn:
     def verdict(self) -> TrajectoryVerdict:
         least = self.solution.lift_offs
         return check_trajectory(self.built, self.trajectory, minimum_lift_offs=least)
-
-    @property
-    def measures(self) -> tuple[PathMeasures, ...]:
-        """Made up: one of each path."""
-        return tuple(
-            PathMeasures(0.1, path.length, 1.0, 0.99, 1.1, 0.8) for path in self.paths.paths
-        )
 
 
 @cache

@@ -11,6 +11,7 @@ from pathlib import Path
 import coal
 import numpy as np
 import pinocchio as pin
+from pinocchio_reading import geometry_of
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.robot import Robot
@@ -30,7 +31,7 @@ class World:
     """Signed distances (m, negative inside) between the arm and what is around it."""
 
     def __init__(self, robot: Robot, vertices: Array, faces: Array) -> None:
-        self.model, self.geometry = robot.model, robot.geometry
+        self.model, self.geometry = robot.model, geometry_of(robot)
         self.data = self.model.createData()
         self.geometry_data = self.geometry.createData()
         self.object = coal.BVHModelOBBRSS()

@@ -20,7 +20,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.lab.families.meshes import grid_faces
 from cellcolor.mesh.dividing import small_areas
-from cellcolor.tool_paths.cover import Bounds, Covered, check_spacing, cover
+from cellcolor.tool_paths.cover import Covered, check_spacing, cover
 from cellcolor.tool_paths.region import Segments, regions_of
 from cellcolor.tool_paths.registry import PATTERNS, pattern_names
 from examples import examples
@@ -125,7 +125,7 @@ def test_walls_and_what_is_refused_are_kept_off(
     middles = rng.uniform(0, 1, (data.draw(st.integers(0, 4)), 2))
     everywhere = set(range(len(painting.surface.faces)))
     refusals = Discs(middles, data.draw(st.floats(0.02, 0.3)), everywhere)
-    found = covered(painting, pattern, spacing, bounds=Bounds(walls, refusals))
+    found = covered(painting, pattern, spacing, walls=walls, refusals=refusals)
     checker = PathChecker(painting.surface, painting.segment_of, walls)
     finest = spacing / 4
     for path in found.paths.paths:

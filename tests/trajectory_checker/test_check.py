@@ -19,8 +19,8 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import prepare
+from cellcolor.trajectory_checker import area
 from cellcolor.trajectory_checker.check import check_trajectory
-from cellcolor.trajectory_checker.tolerances import Limits
 
 
 def judged(trajectory: Trajectory, **options: Any) -> TrajectoryVerdict:
@@ -223,17 +223,17 @@ def test_without_times_only_geometry_is_judged() -> None:
 
 
 @pytest.mark.second
-def test_declared_limits() -> None:
-    """Each is a fault only if the limit says so."""
+def test_each_limit_is_held(monkeypatch: pytest.MonkeyPatch) -> None:
     trajectory = rasters.cap()[2]
-    assert judged(trajectory, limits=Limits(most_mean_visits=1.1)).of_kind("repeated")
-    assert judged(trajectory, limits=Limits(most_mean_visits=1.2)).valid
-    strict = Limits(least_covered_share=1.0, least_closely_covered_share=1.0)
     missing = replace(trajectory, contact=trajectory.contact & (trajectory.segment != 1))
-    assert len(judged(missing, limits=strict).of_kind("uncovered")) == 3
-    loose = Limits(least_covered_share=0.0, least_closely_covered_share=0.0)
-    # A part larger than a footprint is a fault all the same.
-    assert len(judged(missing, limits=loose).of_kind("uncovered")) == 1
+    for most, kinds in ((1.1, {"repeated"}), (1.2, set())):
+        monkeypatch.setattr(area, "_MOST_MEAN_VISITS", most)
+        assert set(judged(trajectory).fault_counts) == kinds
+    # A part larger than a footprint is a fault whatever the shares are.
+    for least, faults in ((1.0, 3), (0.0, 1)):
+        monkeypatch.setattr(area, "_LEAST_COVERED", least)
+        monkeypatch.setattr(area, "_LEAST_CLOSELY_COVERED", least)
+        assert len(judged(missing).of_kind("uncovered")) == faults
 
 
 def test_the_area_of_a_flat_raster() -> None:
@@ -268,14 +268,6 @@ def test_an_empty_trajectory_covers_nothing() -> None:
     verdict = judged(empty)
     assert (verdict.strokes, verdict.lift_offs, verdict.samples) == (0, 0, 0)
     assert set(verdict.fault_counts) == {"uncovered"}
-
-
-def test_two_meshes_are_refused() -> None:
-    prepared, built, trajectory = rasters.cap()
-    fewer = replace(prepared.surface, faces=prepared.surface.faces[1:])
-    finer = replace(prepared, surface=fewer)
-    with pytest.raises(InputError, match="a trajectory is judged on one"):
-        check_trajectory(replace(built, prepared=finer), trajectory)
 
 
 @pytest.mark.second

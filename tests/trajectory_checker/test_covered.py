@@ -13,7 +13,7 @@ from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER
 from cellcolor.errors import TooLarge
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.trajectory_checker.area import Strips, passes, repeated_stretches
+from cellcolor.trajectory_checker.area import counted, in_strips, passes, repeated_stretches
 from cellcolor.trajectory_checker.contact import Contact
 from cellcolor.trajectory_checker.covered import reach
 from cellcolor.trajectory_checker.dense import Dense
@@ -50,7 +50,7 @@ def contact_along(
     down, contact = np.tile([0.0, 0.0, -1.0], (k, 1)), np.ones(k, dtype=bool)
     stroke, segment = (zero if given is None else given for given in (stroke, segment))
     dense = Dense(np.arange(k), np.zeros(k), none, points, down, contact, stroke)
-    return Contact(dense, np.arange(k), mesh.locate(points, up(points)), segment, none, zero)
+    return Contact(dense, np.arange(k), mesh.locate(points, up(points)), segment, zero)
 
 
 def along(*corners: tuple[float, float]) -> Array:
@@ -143,19 +143,18 @@ def test_repeated_stretches(begin: float, length: float, off: float) -> None:
     none = np.full(len(points), -1)
     found = repeated_stretches(contact_along(points, fine(FLAT), stroke), none, 0.0025, 0.02)
     if off > 0.0025:
-        assert found == []
+        assert not len(found)
         return
-    (stretch,) = found
-    assert (stretch.first, stretch.last) == (len(first), len(points) - 1)
-    assert stretch.length == pytest.approx(length, abs=0.001)
-    assert points[stretch.earlier_first, 0] == pytest.approx(begin + length, abs=0.003)
-    assert points[stretch.earlier_last, 0] == pytest.approx(begin, abs=0.003)
+    ((one, other, earlier_one, earlier_other),) = found.tolist()
+    assert (one, other) == (len(first), len(points) - 1)
+    assert points[earlier_one, 0] == pytest.approx(begin + length, abs=0.003)
+    assert points[earlier_other, 0] == pytest.approx(begin, abs=0.003)
 
 
 def test_crossing_an_earlier_pass_is_no_repetition() -> None:
     points = along((0.0, 0.03), (0.1, 0.03), (0.1, 0.05), (0.05, 0.05), (0.05, 0.0))
     none = np.full(len(points), -1)
-    assert not repeated_stretches(contact_along(points, fine(FLAT)), none, 0.0025, 0.02)
+    assert not len(repeated_stretches(contact_along(points, fine(FLAT)), none, 0.0025, 0.02))
 
 
 @examples(20)
@@ -173,8 +172,8 @@ def test_segments_may_overlap_in_a_strip_beside_what_is_theirs_alone(
     segment = segment[stroke]
     contact = contact_along(points, mesh, stroke, segment)
     visits = passes(contact, mesh, spacing / 2)
-    strips = Strips.of(mesh, visits, overlap + 1.25 * spacing)
-    counted, x = strips.counted(mesh, visits), mesh.vertices[:, 0]
+    in_strip = in_strips(mesh, visits, overlap + 1.25 * spacing)
+    found, x = counted(mesh, visits, in_strip), mesh.vertices[:, 0]
     within = np.abs(mesh.vertices[:, 1] - 0.03) < 0.02
 
     def by(places: np.ndarray) -> np.ndarray:
@@ -185,12 +184,11 @@ def test_segments_may_overlap_in_a_strip_beside_what_is_theirs_alone(
     # Where both come everywhere, the first has nothing alone, so all of it counts twice.
     wanted = np.where(shared & twice, double, single)
     sure = within & (np.abs(np.abs(x[:, None] - [*left, *right]) - spacing / 2) > 1e-3).all(axis=1)
-    assert np.array_equal(counted[sure], wanted[sure])
-    strip = np.where(strips.near(contact.at.points, segment), segment, -1)
+    assert np.array_equal(found[sure], wanted[sure])
+    strip = np.where(in_strip(contact.at.points, segment), segment, -1)
     assert (strip[segment == 0] == (-1 if twice else 0)).all()
     if not twice:
-        found = repeated_stretches(contact, strip, 0.0025, 0.02)
-        assert found == []
+        assert not len(repeated_stretches(contact, strip, 0.0025, 0.02))
 
 
 def test_what_stays_in_one_place_is_refused() -> None:

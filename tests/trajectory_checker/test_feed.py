@@ -14,7 +14,7 @@ from cellcolor.data.trajectory_verdict import StrokeFeed
 from cellcolor.frontend.setup import Motion
 from cellcolor.trajectory_checker.dense import Dense, strokes_of
 from cellcolor.trajectory_checker.fault_list import FaultList
-from cellcolor.trajectory_checker.feed import feed_of, judge_feed, judge_transfers
+from cellcolor.trajectory_checker.feed import feed_of, judge_feed, judge_tool_speeds
 from cellcolor.trajectory_checker.joint_motion import JointLimits
 from examples import examples
 
@@ -81,7 +81,8 @@ def judged(
 ) -> tuple[StrokeFeed, set[str]]:
     drive, dense = along(speed, lever)
     slides = np.zeros(lever.shape[1], dtype=bool)
-    limits = JointLimits(None, None, velocity, acceleration, None, ASKED, slides)
+    everywhere = np.full(len(velocity), np.inf)
+    limits = JointLimits(-everywhere, everywhere, velocity, acceleration, None, slides)
     motion = Motion(
         tool_radius_m=RADIUS, speed_m_per_s=ASKED, joint_accelerations_rad_per_s2=(1.0,), **keys
     )
@@ -136,10 +137,9 @@ def test_the_tip_keeps_to_its_speed_between_strokes(most: float | None, kinds: s
     turn = np.linspace(0.0, np.pi, count + 1)
     tips = np.column_stack([np.cos(turn), np.sin(turn), 0 * turn]) / np.pi  # 1 m
     sample, away = np.minimum(np.arange(count + 1) // count, 1), np.zeros(count + 1, dtype=bool)
-    dense = Dense(
-        sample, np.zeros(count + 1), turn[:, None], tips, tips, away, np.full(count + 1, -1)
-    )
+    way = np.arange(count + 1) % count / count
+    dense = Dense(sample, way, turn[:, None], tips, tips, away, np.full(count + 1, -1))
     motion = Motion(joint_accelerations_rad_per_s2=(1.0,), transfer_speed_m_per_s=most)
     faults = FaultList(plain, timed=True)
-    judge_transfers(plain, dense, motion, faults)
+    judge_tool_speeds(plain, dense, np.zeros(1, dtype=bool), motion, True, faults)
     assert set(faults.counts) == kinds

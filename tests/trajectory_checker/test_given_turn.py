@@ -80,10 +80,10 @@ def test_a_configuration_has_its_color_with_its_turn_only() -> None:
     assert len(nodes) > 20 and (built.reasons[tuple(nodes.T)] == VALID).all()
     own = built.configurations[tuple(nodes.T)]
     colors = built.node_color[tuple(nodes.T)]
-    assert (at_vertices(built, nodes[:, 0], own).color == colors).all()
+    assert (at_vertices(built, nodes[:, 0], own)[0] == colors).all()
     for degrees, kept in ((0.9, True), (-0.9, True), (1.1, False), (-1.1, False), (45.0, False)):
         other = own + np.radians(degrees) * np.eye(6)[5]
-        held = at_vertices(built, nodes[:, 0], other)
-        assert (held.color == (colors if kept else -1)).all()
+        held, why = at_vertices(built, nodes[:, 0], other)
+        assert (held == (colors if kept else -1)).all()
         if not kept and abs(degrees) < 5:
-            assert "1.1 degrees off its turn" in held.why_none(0)
+            assert "1.1 degrees off its turn" in why[0]

@@ -26,7 +26,6 @@ from cellcolor.frontend.prepared import prepare
 from cellcolor.trajectory_checker.check import check_trajectory
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.stated import completed, judge_lift_offs
-from cellcolor.trajectory_checker.tolerances import Limits
 
 
 def judged(trajectory: Trajectory, **options: Any) -> TrajectoryVerdict:
@@ -84,18 +83,17 @@ def test_what_is_rightly_left_out_is_not_uncovered() -> None:
 
 def test_a_repeated_stretch_may_be_stated() -> None:
     """All of it, or it is a fault as far as it is not stated."""
-    loose = Limits(most_mean_visits=2.0)
     planted = driven_twice()
-    (fault,) = judged(planted, limits=loose).of_kind("repeated")
+    (fault,) = judged(planted).of_kind("repeated")
     assert fault.sample is not None
     assert fault.last_sample is not None
     whole = RepeatedStretch(fault.sample, fault.last_sample, "narrow")
-    verdict = judged(replace(planted, repeated=(whole,)), limits=loose)
+    verdict = judged(replace(planted, repeated=(whole,)))
     assert verdict.valid
     assert verdict.covered is not None
     assert verdict.covered.stated_repeated_m == pytest.approx(verdict.covered.repeated_m, rel=0.01)
     part = RepeatedStretch(fault.sample, fault.sample + 60, "narrow")
-    (rest,) = judged(replace(planted, repeated=(part,)), limits=loose).of_kind("repeated")
+    (rest,) = judged(replace(planted, repeated=(part,))).of_kind("repeated")
     assert rest.sample == pytest.approx(fault.sample + 61, abs=2)
     assert rest.last_sample == fault.last_sample
 
@@ -122,7 +120,7 @@ def test_a_table_says_what_the_trajectory_states(tmp_path: Path) -> None:
     ]
     assert [e.sample for e in read.extra_lift_offs] == [extra.sample]
     assert read.unplanned == (3,)
-    as_file, as_table = judged(stated), judged(read, limits=Limits(silent=True))
+    as_file, as_table = judged(stated), judged(read, silent=True)
     assert as_file.fault_counts == as_table.fault_counts
     assert "repeated" not in as_table.fault_counts
 

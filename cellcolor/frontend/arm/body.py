@@ -5,12 +5,14 @@ Each engine makes of a shape what it works with.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, Literal
 
+import igl
 import numpy as np
 import pinocchio as pin
 import trimesh
@@ -20,12 +22,21 @@ from cellcolor.arrays import Array, Index
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.link_mesh import find_mesh, load_link_mesh
 from cellcolor.frontend.arm.urdf import LinkShape, Urdf
-from cellcolor.frontend.setup import MeshCollision
+from cellcolor.frontend.setup import MeshCollision, RobotFiles
 from cellcolor.mesh.triangle_mesh import grouped
 
 Kind = Literal[
     "box", "sphere", "cylinder", "capsule", "cone", "half-space", "cells", "hull", "mesh"
 ]
+
+_MESHES: dict[str, Callable[..., trimesh.Trimesh]] = {
+    "box": lambda *size: trimesh.creation.box(size),
+    "sphere": partial(trimesh.creation.icosphere, 2),
+    "cylinder": partial(trimesh.creation.cylinder, sections=20),
+    "cone": partial(trimesh.creation.cone, sections=20),
+    "capsule": lambda radius, length: trimesh.creation.capsule(length, radius, count=[20, 20]),
+}
+"""Filled shapes by their sizes in m, anywhere along z."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +93,18 @@ class Shape:
         signs = np.stack(np.meshgrid(*[(-0.5, 0.5)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
         from_box = np.linalg.inv(to_box)
         return np.asarray((signs * extents) @ from_box[:3, :3].T + from_box[:3, 3])
+
+    def shell(self) -> tuple[Array, Index]:
+        """Points (k, 3) in m and triangles (t, 3) of its surface, curved faces as many flat ones.
+
+        They are in the frame of what carries it. A half space has none, and cells have no such.
+        """
+        points, faces = self.vertices, self.faces
+        if self.kind in _MESHES:
+            mesh = _MESHES[self.kind](*self.sizes)
+            points = mesh.vertices - mesh.bounds.mean(axis=0)
+            faces = np.array(mesh.faces, dtype=np.int64)
+        return points @ self.rotation.T + self.origin, faces
 
     @property
     def width(self) -> float:
@@ -160,27 +183,63 @@ class Body:
         return Shape(kind, (self.radius, self.length), rotation=turn, origin=middle)
 
 
-@dataclass(frozen=True)
-class StandIn:
+_SAMPLES = 5_000  # of a hull's surface
+_FAR = 0.02  # m; a hull that is farther off its mesh is warned of
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshBody(Body):
     """What collides in the place of a link's mesh.
 
     Attributes:
         chosen: hull or exact.
         vertices, faces: the mesh, in the frame of the joint that carries it, m.
-        body: what collides.
     """
 
-    link: str
     file: Path
     chosen: MeshCollision
     vertices: Array
     faces: Index
-    body: Body
+
+    @cached_property
+    def off_m(self) -> float:
+        """How far the farthest of many points on the hull is from the mesh; 0 of the mesh."""
+        if self.chosen == "exact":
+            return 0.0
+        surface = trimesh.Trimesh(self.shape.vertices, self.shape.faces, process=False)
+        points, _ = trimesh.sample.sample_surface(surface, _SAMPLES, seed=0)
+        squares = igl.point_mesh_squared_distance(points, self.vertices, self.faces)[0]
+        return math.sqrt(squares.max())
+
+    @property
+    def warning(self) -> str | None:
+        """For a hull that is far off its mesh: what to choose instead."""
+        if self.off_m <= _FAR:
+            return None
+        return (
+            f"{self.link!r}: the convex hull of {self.file.name} is {self._millimeters} mm off "
+            "the mesh, and fills what is hollow there: "
+            '"exact" collides as the mesh is (mesh_collision_of under [robot])'
+        )
+
+    def __str__(self) -> str:
+        if self.chosen == "hull":
+            return (
+                f"{self.link!r}: convex hull of {self.file.name}, up to {self._millimeters} mm off"
+            )
+        closed = trimesh.Trimesh(self.vertices, self.faces, process=False).is_watertight
+        open_ = "" if closed else "; it is open: what is all inside it goes unnoticed"
+        return f"{self.link!r}: {self.file.name}, as it is{open_}"
+
+    @property
+    def _millimeters(self) -> str:
+        """How far it is off, rounded down to a tenth."""
+        return f"{math.floor(1e4 * self.off_m) / 10:g}"
 
 
 def mesh_body(
     link: str, joint: int, file: Path, vertices: Array, faces: Index, chosen: MeshCollision
-) -> StandIn:
+) -> MeshBody:
     """What stands for a mesh, given in the frame of its joint, m.
 
     Raises:
@@ -191,26 +250,27 @@ def mesh_body(
     if solid is None:
         message = "the mesh lies in a plane, so it has no hull: choose 'exact' for its link"
         raise InputError(str(file), None, message)
-    return StandIn(link, file, chosen, vertices, faces, _solid_body(link, joint, solid))
+    own = _solid(solid)
+    return MeshBody(link, joint, *own, file=file, chosen=chosen, vertices=vertices, faces=faces)
 
 
-def _solid_body(link: str, joint: int, solid: Shape) -> Body:
-    """A hull or a mesh as a body, its capsule around the box that is around it."""
+def _solid(solid: Shape) -> tuple[Array, Array, float, bool, Shape]:
+    """What a body has of a hull or a mesh, with the capsule around the box that is around it."""
     corners = solid.corners
     middle, edges = corners.mean(axis=0), corners[[1, 2, 4]] - corners[0]
     across, thick, along = sorted(edges, key=np.linalg.norm)
     radius = float(np.hypot(np.linalg.norm(across), np.linalg.norm(thick))) / 2
-    return Body(link, joint, middle - along / 2, middle + along / 2, radius, False, solid)
+    return middle - along / 2, middle + along / 2, radius, False, solid
 
 
 def _round_bodies(
-    link: str, joint: int, own: tuple[LinkShape, ...], placed: list[pin.GeometryObject]
+    link: str, joint: int, own: tuple[LinkShape, ...], placed: list[pin.SE3]
 ) -> list[Body]:
-    """Bodies of a link's cylinders, spheres and capsules, where Pinocchio has them.
+    """Bodies of a link's cylinders, spheres and capsules, placed in the frame of the joint.
 
     A cylinder with a sphere of its radius on both ends is a capsule.
     """
-    shapes = [(shape, each.placement) for shape, each in zip(own, placed, strict=True)]
+    shapes = list(zip(own, placed, strict=True))
     spheres = [
         (np.array(at.translation), shape.sizes[0]) for shape, at in shapes if shape.kind == "sphere"
     ]
@@ -218,94 +278,60 @@ def _round_bodies(
     for shape, at in shapes:
         if shape.kind not in ("capsule", "cylinder"):
             continue
-        radius, length = shape.sizes
-        center, half = np.array(at.translation), np.array(at.rotation)[:, 2] * (length / 2)
-        start, end = center - half, center + half
-        round_ends = shape.kind == "capsule"
-        if not round_ends:
-            caps = [
-                next((s for s in spheres if _is_cap(s, point, radius)), None)
-                for point in (start, end)
+        (radius, length), flat = shape.sizes, shape.kind == "cylinder"
+        half = at.rotation[:, 2] * (length / 2)
+        ends = at.translation - half, at.translation + half
+        caps = [
+            [
+                number
+                for number, (center, other) in enumerate(spheres)
+                if max(abs(other - radius), float(np.linalg.norm(center - end))) < _SAME
             ]
-            round_ends = caps[0] is not None and caps[1] is not None
-            if round_ends:
-                spheres = [sphere for sphere in spheres if not any(sphere is c for c in caps)]
-        bodies.append(Body(link, joint, start, end, radius, flat=not round_ends))
+            for end in ends
+        ]
+        if flat and all(caps):
+            flat = False
+            spheres = [each for k, each in enumerate(spheres) if k not in caps[0] + caps[1]]
+        bodies.append(Body(link, joint, *ends, radius, flat))
     bodies.extend(Body(link, joint, at, at, radius, flat=False) for at, radius in spheres)
     return bodies
 
 
-def _is_cap(sphere: tuple[Array, float], point: Array, radius: float) -> bool:
-    center, own = sphere
-    return abs(own - radius) < _SAME and float(np.linalg.norm(center - point)) < _SAME
-
-
-@dataclass(frozen=True)
-class Shapes:
-    """How the meshes of links collide, and where they are.
-
-    Attributes:
-        chosen: what stands for a link's mesh.
-        chosen_of: the same of some links by their names.
-        package_folders: packages, or folders that have some, for ``package://``.
-    """
-
-    chosen: MeshCollision = "hull"
-    chosen_of: Mapping[str, MeshCollision] = field(default_factory=dict)
-    package_folders: tuple[Path, ...] = ()
-
-
 def place_shapes(
-    trees: tuple[Urdf, Urdf],
-    whole: Urdf,
-    model: pin.Model,
-    geometry: pin.GeometryModel,
-    shapes: Shapes,
-) -> tuple[tuple[Body, ...], tuple[StandIn, ...]]:
-    """Bodies of all links, base first, and what stands for the meshes among them.
+    whole: Urdf, model: pin.Model, files: RobotFiles, folder: Path
+) -> tuple[Body, ...]:
+    """Bodies of all links, base first.
 
     Args:
-        trees: arm and tool, for the names and folders of their files.
-        whole: both as one tree.
-        model, geometry: as Pinocchio has read it, meshes as spheres.
+        whole: arm and tool as one tree.
+        model: the joints that move, and a frame for each link.
+        files: what stands for a link's mesh, and where packages are.
+        folder: what the names of package folders are relative to.
 
     Raises:
-        InputError: Pinocchio has read other shapes, or a mesh cannot be found or read.
+        InputError: a mesh cannot be found or read.
     """
-    meshed = {name for name, own in whole.shapes.items() if any(s.kind == "mesh" for s in own)}
-    for name in shapes.chosen_of:
-        if name not in meshed:
+    for name in files.mesh_collision_of:
+        if name not in whole.links or all(s.kind != "mesh" for s in whole.links[name].shapes):
             message = "no such link with a mesh for collisions"
             raise InputError(None, f"robot.mesh_collision_of.{name}", message)
-    read: dict[str, list[pin.GeometryObject]] = {}
-    for each in geometry.geometryObjects:
-        read.setdefault(model.frames[each.parentFrame].name, []).append(each)
+    packages = [folder / name for name in files.package_folders]
     bodies: list[Body] = []
-    stand_ins: list[StandIn] = []
-    for link, own in whole.shapes.items():
-        tree = trees[1] if link in trees[1].shapes else trees[0]
-        placed = read.get(link, [])
-        if len(placed) != len(own):
-            message = f"Pinocchio read {len(placed)} of {len(own)} shapes"
-            raise InputError(str(whole.file), f"link[{link}].collision", message)
-        joint = placed[0].parentJoint
-        bodies += _round_bodies(link, joint, own, placed)
-        for number, (shape, at) in enumerate(zip(own, placed, strict=True)):
-            if shape.kind not in ("box", "mesh"):
-                continue
-            turn = np.array(at.placement.rotation)
-            center = np.array(at.placement.translation)
+    for name, link in whole.links.items():
+        frame = model.frames[model.getFrameId(name, pin.FrameType.BODY)]
+        joint, placed = frame.parentJoint, [frame.placement * each.place for each in link.shapes]
+        bodies += _round_bodies(name, joint, link.shapes, placed)
+        for number, (shape, at) in enumerate(zip(link.shapes, placed, strict=True)):
             if shape.kind == "box":
                 corners = trimesh.creation.box(shape.sizes).vertices
-                solid = convex_hull(corners @ turn.T + center)
+                solid = convex_hull(corners @ at.rotation.T + at.translation)
                 assert solid is not None  # no side of it is 0
-                bodies.append(_solid_body(link, joint, solid))
-                continue
-            place = f"link[{link}].collision[{number}].mesh"
-            file = find_mesh(shape.file, tree.file, place, tree.folder, shapes.package_folders)
-            vertices, faces = load_link_mesh(file, shape.sizes)
-            chosen = shapes.chosen_of.get(link, shapes.chosen)
-            own_mesh = (vertices @ turn.T + center, faces)
-            stand_ins.append(mesh_body(link, joint, file, *own_mesh, chosen))
-            bodies.append(stand_ins[-1].body)
-    return tuple(bodies), tuple(stand_ins)
+                bodies.append(Body(name, joint, *_solid(solid)))
+            elif shape.kind == "mesh":
+                place = f"link[{name}].collision[{number}].mesh"
+                file = find_mesh(shape.mesh, link.file, place, link.folder, packages)
+                vertices, faces = load_link_mesh(file, shape.sizes)
+                chosen = files.mesh_collision_of.get(name, files.mesh_collision)
+                own_mesh = (vertices @ at.rotation.T + at.translation, faces)
+                bodies.append(mesh_body(name, joint, file, *own_mesh, chosen))
+    return tuple(bodies)

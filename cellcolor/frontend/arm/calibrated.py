@@ -37,9 +37,8 @@ from cellcolor.frontend.arm.kinematics import (
     task_jacobian,
     tip_jacobian,
 )
-from cellcolor.frontend.arm.newton import SAME, Polished, nearest
+from cellcolor.frontend.arm.newton import Polished, nearest
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.signs import BRANCHES, Signs
 from cellcolor.memory import chunks
 
 
@@ -149,7 +148,6 @@ _FARTHER = 5.0  # times what the axes are off: so far from a pose are those arou
 _ANOTHER = 0.1  # rad; an ideal solution of a pose around that is farther away is a start of its own
 _FOLDED = 0.05  # smallest singular value; below it two solutions are about to meet
 _APART = 0.1  # rad, to both sides of there
-_ELBOW_AND_WRIST = 3  # the bits of both in a branch's index
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -182,27 +180,6 @@ class NearIdeal(Polished):
             moved[nearest(moved, own) < _ANOTHER] = np.nan
             starts.append(moved)
         return np.concatenate(starts, axis=1)
-
-    def named(self, solutions: Array, signs: Signs) -> Array:
-        """Solutions (n, s, joints) under their names (n, 8, joints), as many as there is room for.
-
-        Round an aligned wrist a pose can have two with the same signs, and more than eight in all.
-        The one with the larger determinant has the name. The other one takes that of the same
-        shoulder and the same sign of the determinant if it is free.
-        """
-        pose, number = np.nonzero(~np.isnan(solutions[:, :, 0]))
-        solved = solutions[pose, number]
-        sign, determinants = signs.branches(self.robot, solved)
-        slots = pose * len(BRANCHES) + sign
-        found = np.full((len(solutions) * len(BRANCHES), solutions.shape[2]), np.nan)
-        left = np.argsort(-determinants, kind="stable")
-        for flipped in (0, _ELBOW_AND_WRIST):
-            slot, first = np.unique(slots[left] ^ flipped, return_index=True)
-            free = np.isnan(found[slot, 0])
-            found[slot[free]] = solved[left[first[free]]]
-            there = found[slots[left], None]
-            left = left[nearest(solved[left, None], there)[:, 0] > SAME]
-        return found.reshape(len(solutions), len(BRANCHES), -1)
 
 
 def both_sides_of_folds(robot: Robot, candidates: Array) -> Array:

@@ -26,14 +26,8 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.calibrated import CALIBRATION, Axes, NearIdeal, idealized
-from cellcolor.frontend.arm.inverse import (
-    InverseKinematics,
-    check_lever,
-    check_tool_on_last_axis,
-    locked_angle,
-    pose_at_zero,
-)
-from cellcolor.frontend.arm.kinematics import farthest_reach, frames_along, nearest_points
+from cellcolor.frontend.arm.inverse import SixRevolute
+from cellcolor.frontend.arm.kinematics import frames_along
 from cellcolor.frontend.arm.newton import Polished
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import BRANCHES, signs_of
@@ -43,20 +37,17 @@ _EXACT = 1e-4  # m, and for unit vectors; by how much one of EAIK's answers may 
 _TOLERANCE = 1e-6  # m and rad; axes farther off are neither parallel nor do they meet
 
 
-class EaikKinematics(InverseKinematics):
-    """Any arm that EAIK knows; joint 6, which the task leaves free, is locked.
+class EaikKinematics(SixRevolute):
+    """Any arm that EAIK knows.
 
     The branches have names where the signs of shoulder, elbow and wrist tell the solutions apart
     (:mod:`cellcolor.frontend.arm.signs`), and none otherwise.
     """
 
-    joints = 6
-
     def __init__(self, robot: Robot, files: RobotFiles) -> None:
-        """The arm's closed form, or that of the ideal arm, and the angle of the locked joint."""
-        self._robot, self._locked = robot, locked_angle(robot, files)
-        poses = pose_at_zero(robot)
-        check_tool_on_last_axis(robot, poses, "not an arm of the family eaik")
+        """The arm's closed form, or that of the ideal arm."""
+        super().__init__(robot, files, "not an arm of the family eaik")
+        poses = self._poses
         axes = Axes(poses.axis[0], poses.origin[0, 1:])
         self._solver = _solver(axes)
         off: tuple[float, float] | None = None
@@ -71,23 +62,12 @@ class EaikKinematics(InverseKinematics):
         # The tip as it is on the ideal arm: at its height on the last axis.
         height = float((poses.tip[0] - axes.points[5]) @ axes.directions[5])
         self._tip = height * axes.directions[5]
-        self._set_sizes(axes, poses.tip[0], files)
+        self._set_sizes(files, axes.directions, axes.points)
         tolerance = _TOLERANCE if off is None else 2 * CALIBRATION
         signs = signs_of(robot, self.reach, tolerance)
         solved = partial(NearIdeal, off=off) if off else partial(Polished, farthest=_EXACT)
         self._solution = solved(robot=robot, closed_form=self._closed_form, signs=signs)
         self.branches = () if signs is None else BRANCHES
-
-    def _set_sizes(self, axes: Axes, tip: Array, files: RobotFiles) -> None:
-        lines = list(zip(axes.points, axes.directions, strict=True))
-        shoulder = nearest_points(*lines[0], *lines[1])[0]
-        wrist = nearest_points(*lines[5], *lines[4])[0]
-        self.reach = farthest_reach(self._robot, shoulder)
-        self.lever = float(np.linalg.norm(tip - wrist))
-        check_lever(self._robot, files, self.lever, self.reach - self.lever)
-        first = axes.directions[0]
-        up = -first if first[2] < 0 else first
-        self.viewpoints = np.array([shoulder, shoulder + (self.reach - self.lever) * up])
 
     def solve(
         self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None

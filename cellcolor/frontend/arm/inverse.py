@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.kinematics import Poses, forward
+from cellcolor.frontend.arm.kinematics import Poses, farthest_reach, forward, nearest_points
 from cellcolor.frontend.arm.robot import FREE_TURN, GIVEN_TURN, Robot, TaskSpace
 from cellcolor.frontend.setup import RobotFiles
 from cellcolor.frontend.tables import Registry
@@ -110,26 +110,6 @@ KINEMATICS: Registry[InverseKinematics] = Registry(
 
 
 _TOLERANCE = 1e-6  # m and rad
-MUST_LIE = (
-    "the tool tip and its z axis must lie on this joint's axis, or the arm is redundant, since the "
-    "tool's turn is free (the turn, or a finite set of turns, is given under [task.turn])"
-)
-"""What a tool beside the last axis is refused with."""
-
-
-def locked_angle(robot: Robot, files: RobotFiles) -> float:
-    """The angle in rad at which a setup locks the last joint.
-
-    Raises:
-        InputError: there is none, or it is outside the joint's limits.
-    """
-    locked = files.locked_joint_6_rad
-    if locked is None:
-        raise InputError(None, "robot.locked_joint_6_rad", "is missing")
-    if not robot.lower[-1] <= locked <= robot.upper[-1]:
-        message = "outside the limits of the sixth joint"
-        raise InputError(None, "robot.locked_joint_6_rad", message)
-    return locked
 
 
 def check_lever(robot: Robot, files: RobotFiles, lever: float, arm: float) -> None:
@@ -148,36 +128,70 @@ def pose_at_zero(robot: Robot) -> Poses:
     return forward(robot, np.zeros((1, robot.joints)))
 
 
+def _tool_off_last_axis(poses: Poses) -> tuple[float, float]:
+    """How far the tip is beside the last axis, m, and the sine of the tool's angle with it.
+
+    Args:
+        poses: of one configuration.
+    """
+    axis = poses.axis[0, -1]
+    beside: Array = np.cross(poses.tip[0] - poses.origin[0, -1], axis)
+    return float(np.linalg.norm(beside)), float(np.linalg.norm(np.cross(poses.tool_axis[0], axis)))
+
+
 def is_tool_on_last_axis(poses: Poses) -> bool:
     """Whether turning the last joint moves neither the tip nor the tool's direction.
 
     Args:
         poses: of one configuration.
     """
-    axis, tool = poses.axis[0, -1], poses.tool_axis[0]
-    off: Array = np.cross(poses.tip[0] - poses.origin[0, -1], axis)
-    return bool(max(np.linalg.norm(np.cross(tool, axis)), np.linalg.norm(off)) <= _TOLERANCE)
+    return max(_tool_off_last_axis(poses)) <= _TOLERANCE
 
 
-def check_tool_on_last_axis(robot: Robot, poses: Poses, kind: str) -> None:
-    """Refuse a tool that is not on the axis of the last joint.
+class SixRevolute(InverseKinematics):
+    """An arm of six revolute joints; joint 6, which the task leaves free, is locked."""
 
-    Args:
-        poses: of one configuration.
-        kind: what the arm then is not, for the message.
+    joints = 6
 
-    Raises:
-        InputError: names the joint.
-    """
-    if is_tool_on_last_axis(poses):
-        return
-    axis, tool = poses.axis[0, -1], poses.tool_axis[0]
-    off = 1e3 * np.linalg.norm(np.cross(poses.tip[0] - poses.origin[0, -1], axis))
-    # Either sense of the axis will do.
-    turned = np.degrees(np.arctan2(np.linalg.norm(np.cross(tool, axis)), abs(tool @ axis)))
-    raise InputError(
-        str(robot.files[0]),
-        f"joint[{robot.joint_names[-1]}]",
-        f"{kind}: {MUST_LIE}; the tip is {off:.3g} mm off it, the axis {turned:.3g} degrees "
-        "(mount_position_m and mount_rpy_rad under [robot] move the tool)",
-    )
+    def __init__(self, robot: Robot, files: RobotFiles, kind: str) -> None:
+        """The arm, and the angle of the locked joint.
+
+        Args:
+            kind: what an arm is not whose tool is beside the last axis, for the message.
+
+        Raises:
+            InputError: no angle inside the joint's limits is given, or the tool is not on the axis
+                of the last joint.
+        """
+        locked = files.locked_joint_6_rad
+        if locked is None:
+            raise InputError(None, "robot.locked_joint_6_rad", "is missing")
+        if not robot.lower[-1] <= locked <= robot.upper[-1]:
+            message = "outside the limits of the sixth joint"
+            raise InputError(None, "robot.locked_joint_6_rad", message)
+        self._robot, self._locked, self._poses = robot, locked, pose_at_zero(robot)
+        if not is_tool_on_last_axis(self._poses):
+            off, sine = _tool_off_last_axis(self._poses)
+            message = (
+                f"{kind}: the tool tip and its z axis must lie on this joint's axis, or the arm is "
+                "redundant, since the tool's turn is free (the turn, or a finite set of turns, is "
+                f"given under [task.turn]); the tip is {1e3 * off:.3g} mm off it, the axis "
+                f"{np.degrees(np.arcsin(min(sine, 1.0))):.3g} degrees (mount_position_m and "
+                "mount_rpy_rad under [robot] move the tool)"
+            )
+            raise InputError(str(robot.files[0]), f"joint[{robot.joint_names[-1]}]", message)
+
+    def _set_sizes(self, files: RobotFiles, directions: Array, points: Array) -> None:
+        """Reach, lever and viewpoints of an arm with these axes; refused if the tool is too long.
+
+        Args:
+            directions, points: (6, 3) along the axes, and in m on them, all joints at zero.
+        """
+        lines = list(zip(points, directions, strict=True))
+        shoulder = nearest_points(*lines[0], *lines[1])[0]
+        wrist = nearest_points(*lines[5], *lines[4])[0]
+        self.reach = farthest_reach(self._robot, shoulder)
+        self.lever = float(np.linalg.norm(self._poses.tip[0] - wrist))
+        check_lever(self._robot, files, self.lever, self.reach - self.lever)
+        up = directions[0] * (-1.0 if directions[0, 2] < 0 else 1.0)
+        self.viewpoints = np.array([shoulder, shoulder + (self.reach - self.lever) * up])

@@ -298,25 +298,6 @@ def _measure(
     return float(absolute)
 
 
-def task_determinants(robot: Robot, configurations: Array, limits: Conditioning | None) -> Array:
-    """Task determinants (k,) in m^3 of configurations (k, joints) in rad.
-
-    NaN where there is no configuration, or one that fails one of the limits, if there are any.
-    """
-    found = np.flatnonzero(~np.isnan(configurations[:, 0]))
-    poses = forward(robot, configurations[found])
-    linear, angular = tip_jacobian(poses)
-    determinant = task_determinant(linear, angular, poses.tool_axis, robot.task)
-    if limits is not None:
-        good = (manipulability(linear, robot.task) >= limits.min_manipulability) & (
-            determinant >= limits.min_task_determinant
-        )
-        determinant[~good] = np.nan
-    determinants = np.full(len(configurations), np.nan)
-    determinants[found] = determinant
-    return determinants
-
-
 def nearest_points(p: Array, u: Array, q: Array, v: Array) -> tuple[Array, Array]:
     """The nearest points (3,) of two lines: through p along u, and through q along v.
 

@@ -8,7 +8,7 @@ geometry; from there a few steps lead to the true one.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,7 @@ _STEPS = 25
 _GOOD = 1e-12  # m and rad; nothing is gained from there on
 _LARGEST = 0.3  # rad; no step moves a joint farther
 SAME = 1e-6  # rad; two solutions nearer than this are one
+_ELBOW_AND_WRIST = 3  # the bits of both in a branch's index
 
 
 def misses(poses: Poses, points: Array, directions: Array) -> Array:
@@ -154,7 +155,6 @@ class Polished:
             NaN where there is none. Given ``branches`` (k,) it may leave out all others.
         farthest: by how much a candidate may miss, m, and for unit vectors.
         signs: what names the solutions; None if they have no names.
-        sign_of: (8,) the index that the signs have for each branch.
         at_a_time: how many configurations a pose takes while it is solved.
     """
 
@@ -162,59 +162,68 @@ class Polished:
     closed_form: Callable[..., Array]
     farthest: float
     signs: Signs | None = None
-    sign_of: Index = field(default_factory=lambda: np.arange(len(BRANCHES)))
     at_a_time: int = 16
 
     def solve(self, points: Array, directions: Array, branches: Index | None = None) -> Array:
         """See :meth:`cellcolor.frontend.arm.inverse.InverseKinematics.solve`."""
-        if branches is not None and self.signs is not None:
-            return self._one_each(points, directions, self.sign_of[branches], branches)[:, None]
-        found = self._every(points, directions)
-        return found if self.signs is None else found[:, self.sign_of]
+        if branches is None or self.signs is None:
+            return self._every(points, directions)
+        return self._one_each(points, directions, branches, self.signs)[:, None]
 
     def starts(self, points: Array, directions: Array) -> Array:
         """Configurations (n, s, joints) in rad that lead to all solutions, NaN for none."""
         return self.closed_form(points, directions)
 
-    def named(self, solutions: Array, signs: Signs) -> Array:
-        """Solutions (n, s, joints) under their names (n, 8, joints), the first with each."""
+    def _named(self, solutions: Array, signs: Signs) -> Array:
+        """Solutions (n, s, joints) under their names (n, 8, joints), as many as there is room for.
+
+        Round an aligned wrist a pose of a calibrated arm can have two with the same signs, and more
+        than eight in all. The one with the larger determinant has the name. The other one takes
+        that of the same shoulder and the same sign of the determinant if it is free.
+        """
         pose, number = np.nonzero(~np.isnan(solutions[:, :, 0]))
         solved = solutions[pose, number]
-        slots = pose * len(BRANCHES) + signs.branches(self.robot, solved)[0]
+        branches, determinants = signs.branches(self.robot, solved)
+        slots = pose * len(BRANCHES) + branches
         found = np.full((len(solutions) * len(BRANCHES), solutions.shape[2]), np.nan)
-        found[slots[::-1]] = solved[::-1]
+        left = np.argsort(-determinants, kind="stable")
+        for flipped in (0, _ELBOW_AND_WRIST):
+            slot, first = np.unique(slots[left] ^ flipped, return_index=True)
+            free = np.isnan(found[slot, 0])
+            found[slot[free]] = solved[left[first[free]]]
+            there = found[slots[left], None]
+            left = left[nearest(solved[left, None], there)[:, 0] > SAME]
         return found.reshape(len(solutions), len(BRANCHES), -1)
 
     def _every(self, points: Array, directions: Array) -> Array:
-        """All solutions, (n, 8, joints) by signs or (n, s, joints) without."""
+        """All solutions, (n, 8, joints) by their names or (n, s, joints) without."""
         parts = [np.empty((0, len(BRANCHES) if self.signs else 0, self.robot.joints))]
         for rows in chunks(len(points), self.at_a_time):
             asked = points[rows], directions[rows]
             found = polished(self.robot, self.starts(*asked), *asked, self.farthest)
-            parts.append(merged(found) if self.signs is None else self.named(found, self.signs))
+            parts.append(merged(found) if self.signs is None else self._named(found, self.signs))
         return stacked(parts)
 
-    def _one_each(self, points: Array, directions: Array, signs: Index, branches: Index) -> Array:
+    def _one_each(self, points: Array, directions: Array, branches: Index, signs: Signs) -> Array:
         """The solution (n, joints) of one branch of each pose; the others are not polished.
 
-        Only where the signs of a candidate are not those of its solution, or none has the branch's,
-        are all solutions found.
+        Only where the branch of a candidate is not that of its solution, or none has the one asked
+        for, are all solutions found.
         """
-        assert self.signs is not None
         candidates = self.closed_form(points, directions, branches=branches)
         pose, number = np.nonzero(~np.isnan(candidates[:, :, 0]))
-        own = self.signs.branches(self.robot, candidates[pose, number])[0] == signs[pose]
+        own = signs.branches(self.robot, candidates[pose, number])[0] == branches[pose]
         rows, first = np.unique(pose[own], return_index=True)
         starts = candidates[rows, number[own][first]][:, None]
         ends = polished(self.robot, starts, points[rows], directions[rows], self.farthest)[:, 0]
         known = np.flatnonzero(~np.isnan(ends[:, 0]))
-        known = known[self.signs.branches(self.robot, ends[known])[0] == signs[rows[known]]]
+        known = known[signs.branches(self.robot, ends[known])[0] == branches[rows[known]]]
         found = np.empty((len(points), self.robot.joints))
         found[rows[known]] = ends[known]
         left = np.setdiff1d(np.arange(len(points)), rows[known])
         if len(left):
             every = self._every(points[left], directions[left])
-            found[left] = every[np.arange(len(left)), signs[left]]
+            found[left] = every[np.arange(len(left)), branches[left]]
         return found
 
 

@@ -3,23 +3,16 @@
 A tool may point back into the arm. Collision shapes may stand far from the arm that they belong to:
 a calibration that was read raw moves the frames of two links along axes that are parallel, by
 hundreds of meters, so that the tip moves as before and the shapes of a link are elsewhere. A mesh
-in millimeters is a thousand times too large. Either way a contact of the link means nothing. And
-the hull of a link's mesh may fill what is hollow.
+in millimeters is a thousand times too large. Either way a contact of the link means nothing.
 """
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
-
-import igl
 import numpy as np
-import pinocchio as pin
-import trimesh
 
 from cellcolor.arrays import Array
 from cellcolor.data.wording import looks_like_millimeters
-from cellcolor.frontend.arm.body import Body, StandIn
+from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import Poses, forward, nearest_points
 from cellcolor.frontend.arm.robot import Robot
 
@@ -27,25 +20,17 @@ _NEAR = 1e-3  # m; a tip or a flange so near to where it is seen from shows no d
 _BACK = -0.5  # the cosine of 120 degrees; bent tools and tools that stand aside are less turned
 
 
-def notes_on_tool(model: pin.Model, root: str, tip_link: str, axes: Array) -> tuple[str, ...]:
+def notes_on_tool(robot: Robot, root: str, tip_link: str) -> tuple[str, ...]:
     """A sentence if the tip's z axis, which goes into the part, points back to the arm.
 
     Or if all of the tool does, since it is mounted the wrong way round.
 
     Args:
-        model: arm and tool.
         root: the tool's root link, at the flange.
         tip_link: the tool's tip.
-        axes: (joints, 3) of the joints, each in its own frame.
     """
-    at = {}
-    for link in (root, tip_link):
-        frame = model.frames[model.getFrameId(link, pin.FrameType.BODY)]
-        if frame.parentJoint != model.njoints - 1:
-            return ()  # the flange is not at the end of the chain
-        at[link] = frame.placement
-    flange, tip = np.array(at[root].translation), np.array(at[tip_link].translation)
-    along, z = tip - flange, np.array(at[tip_link].rotation)[:, 2]
+    flange = robot.frame_of(root)[:3, 3]
+    along, z = robot.tip[:3, 3] - flange, robot.tip[:3, 2]
     length = float(np.linalg.norm(along))
     if length > _NEAR and z @ along < _BACK * length:
         off = np.degrees(np.arccos(np.clip(z @ along / length, -1, 1)))
@@ -53,7 +38,7 @@ def notes_on_tool(model: pin.Model, root: str, tip_link: str, axes: Array) -> tu
             f"the z axis of the tip link {tip_link!r} points back to the flange, {off:.0f} degrees "
             "off the way from there to the tip: it has to point out of the tool, into the part",
         )
-    outward = _outward(model, flange, axes)
+    outward = _outward(robot, flange)
     if outward is not None and z @ outward < _BACK and along @ outward < _BACK * length + _NEAR:
         return (
             f"the tool goes from the flange back into the arm, its tip link {tip_link!r} "
@@ -62,15 +47,15 @@ def notes_on_tool(model: pin.Model, root: str, tip_link: str, axes: Array) -> tu
     return ()
 
 
-def _outward(model: pin.Model, flange: Array, axes: Array) -> Array | None:
+def _outward(robot: Robot, flange: Array) -> Array | None:
     """The last joint's axis (3,) in its own frame, from the wrist to the flange."""
-    if len(axes) < 2:
+    if robot.joints < 2:
         return None
-    last, before = model.jointPlacements[model.njoints - 1].inverse(), axes[-2]
-    beside, axis = last.rotation @ before, axes[-1]
+    axis, back = robot.axis[-1], np.linalg.inv(robot.placement[-1])
+    beside = back[:3, :3] @ robot.axis[-2]
     if 1.0 - float(axis @ beside) ** 2 < _NEAR:
         return None
-    wrist = nearest_points(np.zeros(3), axis, np.array(last.translation), beside)[0]
+    wrist = nearest_points(np.zeros(3), axis, back[:3, 3], beside)[0]
     ahead = float((flange - wrist) @ axis)
     return None if abs(ahead) < _NEAR else np.asarray(axis * np.sign(ahead))
 
@@ -158,65 +143,3 @@ def _axes_of(robot: Robot, poses: Poses) -> tuple[Array, float]:
         on_axes.append(origin + along * axis)
     places = np.array([*on_axes, poses.tip[0]])
     return places, float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
-
-
-_SAMPLES = 5_000  # of a hull's surface
-_FAR = 0.02  # m; a hull that is farther off its mesh is warned of
-
-
-@dataclass(frozen=True)
-class StandInReport:
-    """How a link's mesh collides.
-
-    Attributes:
-        link: whose mesh it is.
-        file: the mesh file's name, without its folder.
-        chosen: hull or exact.
-        off_m: how far the farthest of many points on the hull is from the mesh; 0 of the mesh
-            itself.
-        closed: whether the mesh encloses anything; what is inside an open one that collides as
-            it is goes unnoticed.
-    """
-
-    link: str
-    file: str
-    chosen: str
-    off_m: float
-    closed: bool
-
-    @property
-    def warning(self) -> str | None:
-        """For a hull that is far off its mesh: what to choose instead."""
-        if self.off_m <= _FAR:
-            return None
-        return (
-            f"{self.link!r}: the convex hull of {self.file} is {_millimeters(self.off_m)} mm off "
-            "the mesh, and fills what is hollow there: "
-            '"exact" collides as the mesh is (mesh_collision_of under [robot])'
-        )
-
-    def __str__(self) -> str:
-        if self.chosen == "exact":
-            open_ = "" if self.closed else "; it is open: what is all inside it goes unnoticed"
-            return f"{self.link!r}: {self.file}, as it is{open_}"
-        off = _millimeters(self.off_m)
-        return f"{self.link!r}: convex hull of {self.file}, up to {off} mm off"
-
-
-def _millimeters(length: float) -> str:
-    """Rounded down to a tenth."""
-    return f"{math.floor(1e4 * length) / 10:g}"
-
-
-def measured(stand_in: StandIn) -> StandInReport:
-    """Measure one."""
-    off, hull = 0.0, stand_in.body.shape
-    if stand_in.chosen == "hull":
-        surface = trimesh.Trimesh(hull.vertices, hull.faces, process=False)
-        points, _ = trimesh.sample.sample_surface(surface, _SAMPLES, seed=0)
-        squares = igl.point_mesh_squared_distance(points, stand_in.vertices, stand_in.faces)[0]
-        off = math.sqrt(squares.max())
-    mesh = trimesh.Trimesh(stand_in.vertices, stand_in.faces, process=False)
-    return StandInReport(
-        stand_in.link, stand_in.file.name, stand_in.chosen, off, bool(mesh.is_watertight)
-    )

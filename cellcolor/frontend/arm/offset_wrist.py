@@ -31,16 +31,9 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.calibrated import missing, remark_on_missing
-from cellcolor.frontend.arm.inverse import (
-    InverseKinematics,
-    check_lever,
-    check_tool_on_last_axis,
-    locked_angle,
-    pose_at_zero,
-)
+from cellcolor.frontend.arm.inverse import SixRevolute
 from cellcolor.frontend.arm.kinematics import (
     angle_about,
-    farthest_reach,
     frames_along,
     nearest_points,
     one_across,
@@ -57,21 +50,19 @@ _FINER = 4096  # the same of poses of which a solution is missing
 _FARTHEST = 0.5  # m, and for unit vectors; by how much a start may miss the pose
 
 
-class OffsetWrist(InverseKinematics):
-    """An arm whose wrist has an offset; joint 6, which the task leaves free, is locked.
+class OffsetWrist(SixRevolute):
+    """An arm whose wrist has an offset.
 
     Its solutions have no names: nothing but continuity tells them apart.
     """
 
-    joints = 6
     branches = ()
 
     def __init__(self, robot: Robot, files: RobotFiles) -> None:
-        """The arm's axes at zero, and the angle of the locked joint."""
-        self._robot, self._locked = robot, locked_angle(robot, files)
-        poses = pose_at_zero(robot)
-        check_tool_on_last_axis(robot, poses, "not an arm with an offset wrist")
-        self._axes, points = poses.axis[0], poses.origin[0, 1:].copy()
+        """The arm's axes at zero."""
+        super().__init__(robot, files, "not an arm with an offset wrist")
+        poses = self._poses
+        self._axes, points = poses.axis[0], poses.origin[0, 1:]
         n = self._axes[1]
         if np.linalg.norm(np.cross(self._axes[2], n)) > _TOLERANCE:
             raise self._refused(2, "its axis is not parallel to that of joint 2")
@@ -93,13 +84,8 @@ class OffsetWrist(InverseKinematics):
         for joint, length in zip((2, 3), self._lengths, strict=True):
             if length < _LEAST:
                 raise self._refused(joint, "the link before it has no length")
-        wrist = nearest_points(points[5], self._axes[5], points[4], self._axes[4])[0]
-        self.reach = farthest_reach(robot, self._shoulder)
+        self._set_sizes(files, self._axes, points)
         self.lever = float(np.linalg.norm(self._tip - self._center))
-        out = float(np.linalg.norm(self._tip - wrist))
-        check_lever(robot, files, out, self.reach - out)
-        up = self._axes[0] * (-1.0 if self._axes[0, 2] < 0 else 1.0)
-        self.viewpoints = np.array([self._shoulder, self._shoulder + sum(self._lengths) * up])
 
     def _refused(self, joint: int, why: str) -> InputError:
         field = f"joint[{self._robot.joint_names[joint]}]"

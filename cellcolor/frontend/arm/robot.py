@@ -1,4 +1,4 @@
-"""The arm with its tool as plain arrays, taken from Pinocchio's reading of the URDF."""
+"""The arm with its tool as plain arrays."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from cellcolor.arrays import Array, Index, Mask
-from cellcolor.frontend.arm.body import Body, StandIn
+from cellcolor.frontend.arm.body import Body, MeshBody
 
 
 @dataclass(frozen=True)
@@ -85,8 +85,7 @@ class Robot:
         tested_pairs: pairs of bodies (indices) that self-collision looks at: all that do not
             belong to one link or to links next to each other.
         warnings: what its files have that is probably not meant, a sentence each.
-        model, geometry: Pinocchio's own, for those who want to compute independently; meshes and
-            capsules are small spheres there.
+        model: Pinocchio's, with a frame for each link.
         tool_links: the links of the tool that have a body.
         task: what it is asked to do with the tool; ``load_robot`` leaves the turn free.
     """
@@ -107,8 +106,6 @@ class Robot:
     joint_names: tuple[str, ...]
     warnings: tuple[str, ...]
     model: pin.Model = field(repr=False, compare=False)
-    geometry: pin.GeometryModel = field(repr=False, compare=False)
-    stand_ins: tuple[StandIn, ...] = ()
     task: TaskSpace = FREE_TURN
     tool_links: frozenset[str] = frozenset()
 
@@ -149,11 +146,18 @@ class Robot:
             if frame.type == pin.FrameType.BODY and frame.parentJoint == 0
         ]
         if link is None:
-            joint = self.model.frames[self.model.getFrameId(self.joint_names[0])]
+            joint = self.model.frames[
+                self.model.getFrameId(self.joint_names[0], pin.FrameType.JOINT)
+            ]
             link = "base" if "base" in standing else self.model.frames[joint.parentFrame].name
         elif link not in standing:
             raise KeyError(link)
         return self.frame_of(link)
+
+    @property
+    def stand_ins(self) -> tuple[MeshBody, ...]:
+        """The bodies that collide in the place of a link's mesh."""
+        return tuple(body for body in self.bodies if isinstance(body, MeshBody))
 
     @property
     def has_solids(self) -> bool:

@@ -18,12 +18,12 @@ factor.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Index
 from cellcolor.frontend.arm.inverse import pose_at_zero
 from cellcolor.frontend.arm.kinematics import (
     Poses,
@@ -64,6 +64,7 @@ class Signs:
         outwards: 1, or -1 if axis 4 points from the wrist's center to the elbow.
         reach: to make the factors comparable, m.
         parity: sign of the task determinant over the product of the factors' signs.
+        numbers: (8,) the number of each branch in ``BRANCHES`` among the names of the family.
     """
 
     elbow: Array
@@ -74,6 +75,7 @@ class Signs:
     outwards: float
     reach: float
     parity: float
+    numbers: Index = field(default_factory=lambda: np.arange(len(BRANCHES)))
 
     def factors(self, poses: Poses) -> Array:
         """The three factors (k, 3) without unit: shoulder, elbow, wrist; positive for branch 0."""
@@ -91,7 +93,7 @@ class Signs:
     def branches(self, robot: Robot, configurations: Array) -> tuple[NDArray[np.intp], Array]:
         """The branch and the task determinant, (k,) each, of configurations (k, joints) in rad.
 
-        The branch is an index, the determinant absolute, in m^3.
+        The branch is a number, the determinant absolute, in m^3.
 
         For a calibrated arm, next to a singularity, a factor can have the wrong sign, since axes
         that nearly meet have a center only nearly. Then the product of the signs is not that of the
@@ -114,7 +116,7 @@ class Signs:
         negative[wrong, nearest] ^= True
         # A shoulder that changes its sign takes the elbow's with it, whose own factor stays.
         negative[wrong[nearest == 0], 1] ^= True
-        return np.asarray(negative @ np.array([4, 2, 1]), dtype=np.intp), np.abs(determinant)
+        return self.numbers[negative @ np.array([4, 2, 1])], np.abs(determinant)
 
 
 def signs_of(robot: Robot, reach: float, tolerance: float) -> Signs | None:

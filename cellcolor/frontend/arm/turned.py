@@ -169,19 +169,16 @@ class TurnedKinematics(InverseKinematics):
     ) -> Array:
         """No solution where the rule says nothing."""
         directions = self.taken(directions)
-        count, across = len(points), turn_at(self.turn, points, directions)
-        rows = np.flatnonzero(~np.isnan(across[:, 0]))
-        points, directions, across = points[rows], directions[rows], across[rows]
+        across = turn_at(self.turn, points, directions)
         if branches is not None:
-            number, branch = np.divmod(branches[rows], len(self.own.branches))
+            number, branch = np.divmod(branches, len(self.own.branches))
             turned = turned_about(directions, across, self._angles[number])
-            found = self.solve_pose(points, directions, turned, branch)
-            return _spread(found, rows, count)
+            return self.solve_pose(points, directions, turned, branch)
         every = [
             self.solve_pose(points, directions, turned_about(directions, across, angle))
             for angle in self._angles
         ]
-        return _spread(np.concatenate(every, axis=1), rows, count)
+        return np.concatenate(every, axis=1)
 
     def solve_pose(
         self,
@@ -195,7 +192,8 @@ class TurnedKinematics(InverseKinematics):
         Args:
             points, directions: as in
                 :meth:`~cellcolor.frontend.arm.inverse.InverseKinematics.solve`.
-            across: (n, 3) unit vectors of the tool's x axis, at right angles to the directions.
+            across: (n, 3) unit vectors of the tool's x axis, at right angles to the directions; NaN
+                where there is none, and there is no solution then.
             branches: (n,) the only one of the family's wanted of each pose; all without it.
         """
         rotation, tips, axes = self._on_last_axis(points, directions, across)
@@ -273,10 +271,3 @@ def _check_along(robot: Robot) -> None:
         message = "not parallel to the tool's z axis, which arms of this family keep along their "
         message += "axes (mount_rpy_rad under [robot] turns the tool)"
         raise InputError(str(robot.files[0]), f"joint[{name}]", message)
-
-
-def _spread(found: Array, rows: NDArray[np.intp], count: int) -> Array:
-    """What was found (k, s, joints) in some rows of (count, s, joints), NaN in the others."""
-    spread = np.full((count, *found.shape[1:]), np.nan)
-    spread[rows] = found
-    return spread

@@ -12,28 +12,19 @@ solutions of the ideal arm Newton's method leads to those of the true one, which
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.calibrated import CALIBRATION, Axes, NearIdeal, idealized
-from cellcolor.frontend.arm.inverse import (
-    MUST_LIE,
-    InverseKinematics,
-    check_lever,
-    check_tool_on_last_axis,
-    locked_angle,
-    pose_at_zero,
-)
+from cellcolor.frontend.arm.inverse import SixRevolute, pose_at_zero
 from cellcolor.frontend.arm.kinematics import angle_about, forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.signs import Signs, signs_of
+from cellcolor.frontend.arm.signs import signs_of
 from cellcolor.frontend.setup import RobotFiles
 
 BRANCHES = tuple(
@@ -78,29 +69,6 @@ class UrGeometry:
     sign: Array
     offset: Array
 
-    @property
-    def arm_reach(self) -> float:
-        """The farthest that the tip gets from the shoulder, joint limits aside, m.
-
-        Upper arm and forearm are stretched out towards the rest, which makes the least of it when
-        the tool is turned by some angle out of the arm's plane.
-        """
-
-        def shortfall(turn: float) -> float:
-            in_plane = -self.a2 - self.a3 + math.hypot(self.d5, self.reach * math.sin(turn))
-            return -math.hypot(in_plane, self.d4 + self.reach * math.cos(turn))
-
-        return -float(minimize_scalar(shortfall, bounds=(0.0, math.pi), method="bounded").fun)
-
-    @property
-    def viewpoints(self) -> Array:
-        """(2, 3) the shoulder and the arm's length above it, in the world, m.
-
-        Over a bowl or half a pipe the arm reaches into what the shoulder sees the outside of.
-        """
-        arm = abs(self.a2) + abs(self.a3)
-        return np.array([self.shoulder, self.shoulder + arm * self.frame[:, 2]])
-
 
 def ur_geometry(robot: Robot, tolerance: float = _TOLERANCE) -> UrGeometry:
     """Derive the constants from the joint axes at zero.
@@ -109,8 +77,7 @@ def ur_geometry(robot: Robot, tolerance: float = _TOLERANCE) -> UrGeometry:
         tolerance: what axes that are parallel, at right angles or meet may be off by, m and rad.
 
     Raises:
-        InputError: the arm is not UR-type, or the tool is not on the axis of joint 6; names
-            the joint.
+        InputError: the arm is not UR-type; names the joint.
     """
     poses = pose_at_zero(robot)
     w, p = poses.axis[0], poses.origin[0, 1:]
@@ -136,9 +103,6 @@ def ur_geometry(robot: Robot, tolerance: float = _TOLERANCE) -> UrGeometry:
     z2 = w[1] * np.sign((wrist - shoulder) @ w[1])
     z5 = w[4] * np.sign((knuckle - wrist) @ w[4])
     z6 = poses.tool_axis[0]
-    off_axis = np.cross(poses.tip[0] - knuckle, w[5])
-    if np.linalg.norm(np.cross(z6, w[5])) > tolerance or np.linalg.norm(off_axis) > tolerance:
-        raise refuse(5, MUST_LIE)
     upper_arm = _across(p[2] - shoulder, z2)
     forearm = _across(p[3] - p[2], z2)
     lengths = {
@@ -266,26 +230,24 @@ def _arccos(cosine: Array, slack: float) -> Array:
 _SLACK = 0.05  # how much a cosine may exceed 1 where the ideal arm just fails to reach
 
 
-class UrKinematics(InverseKinematics):
-    """UR-type arms; joint 6, which the task leaves free, is locked."""
+class UrKinematics(SixRevolute):
+    """UR-type arms."""
 
-    joints = 6
     branches = BRANCHES
 
     def __init__(self, robot: Robot, files: RobotFiles) -> None:
-        """The constants of the arm, or of the ideal one, and the angle of the locked joint."""
-        self._robot, self._locked = robot, locked_angle(robot, files)
-        self._near: NearIdeal | None = None
+        """The constants of the arm, or of the ideal one that its axes are a little off."""
+        super().__init__(robot, files, "not a UR-type arm")
+        axes, ideal = Axes(self._poses.axis[0], self._poses.origin[0, 1:]), None
         try:
             self.geometry = ur_geometry(robot)
         except InputError:
             # A refusal with the larger tolerance is the one to be seen.
             self.geometry = ur_geometry(robot, CALIBRATION)
-            self._near = _near_ideal(robot, self.geometry, self._locked)
-        self.lever, self.viewpoints = self.geometry.reach, self.geometry.viewpoints
-        self.reach = self.geometry.arm_reach
-        g = self.geometry
-        check_lever(robot, files, self.lever, abs(g.a2) + abs(g.a3))
+            ideal = idealized(axes, CALIBRATION)
+        shown = ideal or axes
+        self._set_sizes(files, shown.directions, shown.points)
+        self._near = None if ideal is None else self._near_ideal(ideal.off(axes))
 
     def solve(
         self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
@@ -297,30 +259,22 @@ class UrKinematics(InverseKinematics):
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
         return () if self._near is None else self._near.remarks(self.solve(points, directions))
 
+    def _near_ideal(self, off: tuple[float, float]) -> NearIdeal:
+        """How an arm is solved whose axes are a little off those of the ideal one, rad and m.
 
-def _near_ideal(robot: Robot, geometry: UrGeometry, locked: float) -> NearIdeal:
-    """A UR-type arm whose axes are a little off those of an ideal one with this geometry."""
-    poses = pose_at_zero(robot)
-    check_tool_on_last_axis(robot, poses, "not a UR-type arm")
-    axes = Axes(poses.axis[0], poses.origin[0, 1:])
-    off = idealized(axes, CALIBRATION).off(axes)
-    signs = signs_of(robot, geometry.arm_reach, 2 * CALIBRATION)
-    assert signs is not None  # a UR-type arm has them
-    closed_form = partial(solve_inverse, geometry, locked_angle=locked, slack=_SLACK)
-    sign_of = _sign_of(robot, geometry, signs)
-    return NearIdeal(robot=robot, closed_form=closed_form, signs=signs, sign_of=sign_of, off=off)
-
-
-def _sign_of(robot: Robot, geometry: UrGeometry, signs: Signs) -> NDArray[np.intp]:
-    """For each of ``BRANCHES`` the index that the signs have for it, (8,).
-
-    Asked of the ideal arm's solutions for the pose among many that is farthest from any change of
-    sign: there the true arm's factors have the same signs.
-    """
-    tries = np.random.default_rng(0).uniform(-np.pi, np.pi, (1000, 6))
-    poses = forward(robot, tries)
-    found = solve_inverse(geometry, poses.tip, poses.tool_axis, 0.0)
-    found = found[~np.isnan(found).any(axis=(1, 2))]
-    factors = signs.factors(forward(robot, found.reshape(-1, 6)))
-    clearest = np.argmax(np.abs(factors).reshape(len(found), -1).min(axis=1))
-    return signs.branches(robot, found[clearest])[0]
+        Which of ``BRANCHES`` the signs stand for is asked of the ideal arm's solutions for the pose
+        among many that is farthest from any change of sign: there the true arm's factors have the
+        same signs.
+        """
+        signs = signs_of(self._robot, self.reach, 2 * CALIBRATION)
+        assert signs is not None  # a UR-type arm has them
+        tries = np.random.default_rng(0).uniform(-np.pi, np.pi, (1000, 6))
+        poses = forward(self._robot, tries)
+        found = solve_inverse(self.geometry, poses.tip, poses.tool_axis, 0.0)
+        found = found[~np.isnan(found).any(axis=(1, 2))]
+        factors = signs.factors(forward(self._robot, found.reshape(-1, 6)))
+        clearest = np.argmax(np.abs(factors).reshape(len(found), -1).min(axis=1))
+        own = signs.branches(self._robot, found[clearest])[0]
+        signs = replace(signs, numbers=np.argsort(own))
+        solve = partial(solve_inverse, self.geometry, locked_angle=self._locked, slack=_SLACK)
+        return NearIdeal(robot=self._robot, closed_form=solve, signs=signs, off=off)

@@ -49,7 +49,7 @@ class Contacts:
         Without one the bodies hang on a frame of their own, the joint 1, which moves freely.
         """
         self._pairs, self._robot = pairs, robot
-        model, geometry = _free_frame() if robot is None else _chain(robot), pin.GeometryModel()
+        model, geometry = _free_frame() if robot is None else robot.model, pin.GeometryModel()
         number: dict[int, int] = {}
         for first, second, _ in pairs:
             for each in (first, second):
@@ -154,15 +154,6 @@ def meet(first: Shape, second: Shape) -> bool:
 def poses_along(points: Array, directions: Array) -> Array:
     """Poses (k, 7) of a free frame: its origin on points, its z axis along unit vectors (k, 3)."""
     return np.column_stack([points, Rotation.from_matrix(frames_along(directions)).as_quat()])
-
-
-def _chain(robot: Robot) -> pin.Model:
-    """The joints of an arm without links."""
-    model = pin.Model()
-    for number, (slides, axis) in enumerate(zip(robot.slides, robot.axis, strict=True)):
-        kind = pin.JointModelPrismaticUnaligned if slides else pin.JointModelRevoluteUnaligned
-        model.addJoint(number, kind(axis), pin.SE3(robot.placement[number]), str(number))
-    return model
 
 
 def _free_frame() -> pin.Model:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Literal
 
@@ -16,7 +14,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
 from cellcolor.frontend.arm.body import Kind, Shape
-from cellcolor.frontend.parts.mesh_file import load_mesh
+from cellcolor.frontend.parts.mesh_file import MeshObject
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import grid_mesh
 from cellcolor.frontend.parts.surface import Faces
@@ -52,16 +50,6 @@ class Obstacle(Placement):
         return self.standing(Shape("mesh", vertices=vertices, faces=faces))
 
 
-_MESHES: dict[str, Callable[..., trimesh.Trimesh]] = {
-    "box": lambda *size: trimesh.creation.box(size),
-    "sphere": partial(trimesh.creation.icosphere, 2),
-    "cylinder": partial(trimesh.creation.cylinder, sections=20),
-    "cone": partial(trimesh.creation.cone, sections=20),
-    "capsule": lambda radius, axis: trimesh.creation.capsule(axis, radius, count=[20, 20]),
-}
-"""Filled shapes for pictures, by their sizes in m, anywhere along z."""
-
-
 class MeshObstacle(Obstacle):
     """A mesh file as a shell, its origin on the position."""
 
@@ -70,7 +58,8 @@ class MeshObstacle(Obstacle):
     meters_per_unit: Positive
 
     def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shell:
-        mesh = load_mesh(folder / self.file, self.meters_per_unit, deadline=deadline)
+        part = MeshObject(file=self.file, meters_per_unit=self.meters_per_unit)
+        mesh = part.surface(folder, deadline)
         return mesh.vertices, mesh.faces
 
 
@@ -90,11 +79,11 @@ class Primitive(Obstacle):
     def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shell:  # noqa: ARG002
         """The shape with its curved faces as many flat ones."""
         radius, *length = self._sizes
-        mesh = _MESHES[self.kind](*self._sizes)
-        mesh.apply_translation(-mesh.bounds.mean(axis=0))
+        vertices, faces = Shape(self.kind, self._sizes).shell()
         if len(length) == 1:  # pictures sort triangles by depth, which goes wrong with long ones
-            mesh = mesh.subdivide_to_size(max(length[0] / 4, radius))
-        return np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)
+            longest = max(length[0] / 4, radius)
+            vertices, faces = trimesh.remesh.subdivide_to_size(vertices, faces, longest)
+        return vertices, faces
 
     def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shape:  # noqa: ARG002
         return self.standing(Shape(self.kind, self._sizes))

@@ -6,19 +6,16 @@ the regions that can be chosen.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated, Self
 
 import igl
 import numpy as np
 from pydantic import Field, FiniteFloat, field_validator, model_validator
-from trimesh.triangles import closest_point
 
 from cellcolor.arrays import Array, Index, Mask, angles_between
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.files.documents import read_text
 from cellcolor.frontend.parts.mending import in_words
 from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.surface import Surface
@@ -34,24 +31,21 @@ _POINTS = 100  # of the area that are looked at
 _ALIKE = 0.5  # of the larger side's area, at least, has the other one
 
 
-def whole_mesh(surface: Surface) -> TriangleMesh:
-    """Its mesh before edges were halved."""
-    return surface.mesh if surface.divided is None else surface.divided[0]
-
-
 def thickness(mesh: TriangleMesh) -> float | None:
     """Of a shell, the median distance in m from one side to the other behind it; None of others."""
     size = float(np.linalg.norm(np.ptp(mesh.points, axis=0)))
     inward = -np.nan_to_num(mesh.triangle_normals)
-    middles = mesh.points[mesh.corners].mean(axis=1)
-    within = mesh.lengths[mesh.edge_of_side].max(axis=1) + _THIN * size
-    behind = np.full(_POINTS, np.inf)
-    for row, (point, face) in enumerate(zip(*spread(mesh, _POINTS), strict=True)):
-        # What lies behind has its own outside on the other side.
-        near = np.linalg.norm(middles - point, axis=1) <= within
-        others = mesh.corners[near & (inward @ inward[face] < -0.5)]
-        hits = igl.ray_mesh_intersect(point, inward[face], mesh.points, others)
-        behind[row] = hits[0][1] if hits else np.inf
+    points, face = spread(mesh, _POINTS)
+    tree = igl.AABB()
+    tree.init(mesh.points, mesh.corners)
+    hits = tree.intersect_ray(mesh.points, mesh.corners, points, inward[face])
+    # What lies behind has its own outside on the other side.
+    behind = np.array(
+        [
+            min((way for other, way, *_ in own if inward[other] @ into < -0.5), default=np.inf)
+            for own, into in zip(hits, inward[face], strict=True)
+        ]
+    )
     found = behind <= _THIN * size
     return float(np.median(behind[found])) if found.mean() >= _MOSTLY else None
 
@@ -69,9 +63,8 @@ def spread(mesh: TriangleMesh, count: int) -> tuple[Array, Index]:
 
 def between_sharp(mesh: TriangleMesh, sharp_rad: float) -> Index:
     """The number of the piece (m,) that each face is in; sharp edges part them."""
-    edges, sides = mesh.pairs
     sharp = np.zeros(len(mesh.edges), dtype=bool)
-    sharp[edges] = angles_between(*(mesh.triangle_normals[s // 3] for s in sides.T)) > sharp_rad
+    sharp[mesh.sharp_edges(sharp_rad)] = True
     return mesh.parts(sharp)
 
 
@@ -96,15 +89,9 @@ def facing(mesh: TriangleMesh, faces: Mask | slice = slice(None)) -> Array:
     return np.asarray(mesh.area_vectors[faces].sum(axis=0) / 2 / area)
 
 
-def inner_point(mesh: TriangleMesh, faces: Mask) -> Array:
-    """The middle (3,) of the largest of some faces."""
-    own: Index = np.flatnonzero(faces)
-    return np.asarray(mesh.points[mesh.corners[own[np.argmax(mesh.areas[own])]]].mean(axis=0))
-
-
 def note_on_shell(surface: Surface) -> tuple[str, ...]:
     """A sentence if a tool has to cover both sides of something thin."""
-    thick = thickness(whole_mesh(surface))
+    thick = thickness(surface.mesh if surface.divided is None else surface.divided[0])
     if thick is None:
         return ()
     return (
@@ -162,14 +149,12 @@ class Cover(Table):
     Attributes:
         component: the number of a component: faces connected by edges, numbered from the
             largest area, 0, to the smallest.
-        faces_file: a text with the number of a face on each line, from 0.
     """
 
     normal: NormalCone | None = None
     box: Box | None = None
     component: Annotated[int, Field(ge=0)] | None = None
     region: Region | None = None
-    faces_file: str | None = None
 
     @model_validator(mode="after")
     def _something(self) -> Self:
@@ -177,7 +162,7 @@ class Cover(Table):
             raise ValueError(f"needs one of {', '.join(type(self).model_fields)}")
         return self
 
-    def patch(self, whole: Surface, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:
+    def patch(self, whole: Surface, deadline: Deadline = NEVER) -> Surface:
         """The faces that are to be covered, as a surface of its own.
 
         Vertices keep their order. Normals on the patch's border are those of its own faces: beside
@@ -185,13 +170,12 @@ class Cover(Table):
 
         Args:
             whole: the object, in its own frame.
-            folder: what ``faces_file`` is relative to.
 
         Raises:
             InputError: no face is chosen, or every face of a closed object; the patch is no
-                manifold; there is no such component or face.
+                manifold; there is no such component.
         """
-        chosen = self.chosen(whole, folder)
+        chosen = self.chosen(whole)
         deadline.check()
         if not chosen.any():
             raise InputError(None, "cover", f"chooses none of {count(len(chosen), 'face')}")
@@ -203,7 +187,7 @@ class Cover(Table):
         try:
             patch = mesh_surface(whole.vertices[used], compact, deadline=deadline)
         except InputError as error:
-            place = _in_whole(error.field, whole, used, np.flatnonzero(chosen))
+            place = _in_whole(error.field, whole, used)
             message = f"chooses a patch that cannot be covered: {place}{error.message}"
             raise InputError(None, "cover", message) from error
         inside = np.bincount(faces.ravel(), minlength=len(whole.vertices)) == np.bincount(
@@ -212,7 +196,7 @@ class Cover(Table):
         normals = np.where(inside[used][:, None], whole.normals[used], patch.normals)
         return Surface(patch.vertices, patch.faces, normals, whole.faceted)
 
-    def chosen(self, whole: Surface, folder: Path = Path()) -> Mask:
+    def chosen(self, whole: Surface) -> Mask:
         """Which faces (m,) of the object are chosen; see :meth:`patch`."""
         chosen = np.ones(len(whole.faces), dtype=bool)
         if self.normal is not None:
@@ -231,43 +215,21 @@ class Cover(Table):
             chosen &= part == np.argsort(-area, kind="stable")[self.component]
         if self.region is not None:
             # On the same side of all sharp edges as the face nearest to the seed.
-            corners, seed = whole.vertices[whole.faces], np.array(self.region.seed_m)
-            nearest = closest_point(corners, np.tile(seed, (len(corners), 1)))
             part = between_sharp(whole.mesh, self.region.sharp_rad)
-            chosen &= part == part[np.argmin(np.linalg.norm(nearest - seed, axis=1))]
-        if self.faces_file is not None:
-            chosen &= _listed(folder / self.faces_file, len(chosen))
+            seed = np.array([self.region.seed_m])
+            face = igl.point_mesh_squared_distance(seed, whole.vertices, whole.faces)[1][0]
+            chosen &= part == part[face]
         return chosen
 
 
-def _listed(file: Path, faces: int) -> Mask:
-    """The faces whose numbers stand in a file, one on each line."""
-    listed = np.zeros(faces, dtype=bool)
-    for number, line in enumerate(read_text(file).splitlines(), start=1):
-        if not line.strip():
-            continue
-        try:
-            face = int(line)
-        except ValueError as error:
-            message = "needs the number of a face"
-            raise InputError(str(file), f"line {number}", message) from error
-        if not 0 <= face < faces:
-            message = f"there is no face {face}: the object has {faces:,}"
-            raise InputError(str(file), f"line {number}", message)
-        listed[face] = True
-    return listed
-
-
-def _in_whole(field: str | None, whole: Surface, vertices: Index, faces: Index) -> str:
+def _in_whole(field: str | None, whole: Surface, vertices: Index) -> str:
     """``vertices[3]`` of the patch as that of the object, with a colon.
 
     By its place where edges were halved: no file has those numbers.
     """
-    for name, numbers in (("vertices", vertices), ("faces", faces)):
-        if field is not None and field.startswith(f"{name}["):
-            own = int(field.removeprefix(f"{name}[").partition("]")[0])
-            if whole.divided is None:
-                return f"{name}[{numbers[own]}]: "
-            corners = numbers[own] if name == "vertices" else whole.faces[numbers[own]]
-            return f"near {in_words(whole.vertices[corners].reshape(-1, 3).mean(axis=0))} m: "
-    return ""
+    if field is None or not field.startswith("vertices["):
+        return ""
+    vertex = vertices[int(field.removeprefix("vertices[").removesuffix("]"))]
+    if whole.divided is None:
+        return f"vertices[{vertex}]: "
+    return f"near {in_words(whole.vertices[vertex])} m: "

@@ -15,23 +15,13 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.surface import Faces
-from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
+from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped, repeated_corners
 
 _SAME = 1e-8  # share of the mesh's size; vertices this close count as one place
 _FLAT = 1e-6  # of the longest side's square; a doubled area that counts as none
 _INSIDE = 1e-7  # of a face's size; so far through another one a face has to go to cross it
 _APART = 0.01  # of the shortest side beside a copy of a vertex
 _UPRIGHT = 1e-3  # unit normals around a vertex whose mean is shorter nearly cancel out
-
-
-def merged(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
-    """For vertices in one place, within 1e-8 of the mesh's size, the first of them."""
-    size = float(np.ptp(vertices, axis=0).max(initial=0.0)) if len(vertices) else 0.0
-    if not size:
-        return vertices, faces
-    place = np.rint((vertices - vertices.min(axis=0)) / (_SAME * size)).astype(np.int64)
-    _, first, group = np.unique(place, axis=0, return_index=True, return_inverse=True)
-    return used(vertices, first[group.ravel()][faces])
 
 
 def used(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
@@ -69,7 +59,12 @@ def cleaned(vertices: Array, faces: Faces) -> Cleaned:
         InputError: no face is left.
     """
     there = len(np.unique(faces))
-    points, corners = merged(vertices, faces)
+    points, corners = vertices, faces
+    size = float(np.ptp(vertices, axis=0).max(initial=0.0)) if len(vertices) else 0.0
+    if size:
+        place = np.rint((vertices - vertices.min(axis=0)) / (_SAME * size)).astype(np.int64)
+        _, first, group = np.unique(place, axis=0, return_index=True, return_inverse=True)
+        points, corners = used(vertices, first[group.ravel()][faces])
     folded = repeated_corners(corners)
     corners = corners[~folded]
     twice = repeated_faces(corners)
@@ -80,12 +75,6 @@ def cleaned(vertices: Array, faces: Faces) -> Cleaned:
         raise InputError(None, "faces", "none is left that has an area and is no copy of another")
     unused, twins = len(vertices) - there, there - len(points)
     return Cleaned(points, corners, unused, twins, int(folded.sum()), double, flat)
-
-
-def repeated_corners(faces: Faces) -> Mask:
-    """The faces (m,) with a vertex that is two of their corners."""
-    a, b, c = faces.T
-    return np.asarray((a == b) | (b == c) | (c == a))
 
 
 def repeated_faces(faces: Faces) -> Mask:
@@ -112,7 +101,8 @@ def refuse_gaps(vertices: Array, faces: Faces, flat: Faces) -> None:
         InputError: a corner of a flat face lies on the side of another (a T-vertex); names the
             place.
     """
-    beside = np.isin(_sides(faces, len(vertices)), _sides(flat, len(vertices)))
+    sides = TriangleMesh(vertices, np.concatenate([faces, flat])).edge_of_side
+    beside = np.isin(sides[: len(faces)], sides[len(faces) :])
     if beside.any():
         face, side = np.argwhere(beside)[0]
         middle = vertices[np.roll(faces[face], -side)[:2]].mean(axis=0)
@@ -121,12 +111,6 @@ def refuse_gaps(vertices: Array, faces: Faces, flat: Faces) -> None:
             "that; the part has to be meshed anew by what it comes from"
         )
         raise InputError(None, f"faces near {in_words(middle)}", message)
-
-
-def _sides(faces: Faces, vertices: int) -> Index:
-    """A number (m, 3) for each side of faces, the same in both directions."""
-    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)]), axis=0)
-    return np.asarray(ends[0] * vertices + ends[1])
 
 
 def in_words(place: Array) -> str:
@@ -184,9 +168,9 @@ def cut_apart(vertices: Array, faces: Faces) -> tuple[Array, Faces, float]:
     if not moved.any():
         return points, parted, 0.0
     # Towards the middle of its faces, by a share of the shortest side that it is an end of.
-    shortest, towards = np.full(len(points), np.inf), np.zeros_like(points)
-    sides = np.linalg.norm(points[parted] - points[np.roll(parted, -1, axis=1)], axis=2)
-    np.minimum.at(shortest, parted, np.minimum(sides, np.roll(sides, 1, axis=1)))
+    mesh, shortest = TriangleMesh(points, parted), np.full(len(points), np.inf)
+    np.minimum.at(shortest, mesh.edges, mesh.lengths[:, None])
+    towards = np.zeros_like(points)
     np.add.at(towards, parted, points[parted].mean(axis=1, keepdims=True) - points[parted])
     length = np.linalg.norm(towards, axis=1, keepdims=True)
     step = _APART * shortest[:, None] * towards / np.maximum(length, 1e-300) * moved[:, None]

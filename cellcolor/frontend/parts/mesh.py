@@ -26,7 +26,7 @@ from cellcolor.frontend.parts.mending import (
     used,
 )
 from cellcolor.frontend.parts.surface import Faces, Part, Surface, check_vertices, refine
-from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.mesh.triangle_mesh import TriangleMesh, check_corners
 
 _FARTHEST, _SMALLEST = 1e6, 1e-6  # m
 
@@ -59,11 +59,15 @@ def mesh_surface(
             fit, before or after halving edges.
     """
     deadline.check()
-    check_corners(vertices, faces)  # here already: a repair would take -1 for the last one
+    check_corners(faces, len(vertices))  # here already: a repair would take -1 for the last one
     if mend and len(faces) and np.isfinite(vertices).all():
         # Sizes first: a triangle that is far too long for a unit looks like one without area.
         _check_size(vertices[np.unique(faces)], meters_per_unit)
-        vertices, faces = _repaired(vertices, faces)
+        clean = cleaned(vertices, faces)
+        refuse_gaps(clean.vertices, clean.faces, clean.flat)
+        vertices, faces = used(clean.vertices, clean.faces)
+        faces = turned(faces, against_the_others(faces)[0])
+        faces = turned(faces, inside_out(TriangleMesh(vertices, faces)))
     if not len(faces):
         raise InputError(None, "faces", "there are none")
     _check_size(vertices, meters_per_unit)
@@ -88,7 +92,10 @@ def mesh_surface(
             message = f"the part is {size}: {error.message}"
             raise InputError(error.file, error.field, message) from error
     deadline.check()
-    normals = summed_normals(mesh)
+    # trimesh's own vertex normals have length 1 already, and do not reveal faces that cancel out.
+    angles = trimesh.triangles.angles(mesh.points[mesh.corners])
+    normals = np.zeros_like(mesh.points)
+    np.add.at(normals, mesh.corners, angles[:, :, None] * mesh.triangle_normals[:, None])
     size = np.linalg.norm(normals, axis=1, keepdims=True)
     if size.min() < 1e-6:
         vertex = int(np.argmin(size))
@@ -104,27 +111,6 @@ def mesh_surface(
     normals /= size
     points = mesh.points * meters_per_unit
     return Surface(points, mesh.corners, normals, faceted=True, divided=divided)
-
-
-def check_corners(vertices: Array, faces: Faces) -> None:
-    """Refuse a face that has a vertex which is not there.
-
-    Raises:
-        InputError: names the corner.
-    """
-    unknown = np.argwhere((faces < 0) | (faces >= len(vertices)))
-    if len(unknown):
-        face, corner = unknown[0]
-        message = f"there is no vertex {faces[face, corner]}"
-        raise InputError(None, f"faces[{face}][{corner}]", message)
-
-
-def _repaired(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
-    clean = cleaned(vertices, faces)
-    refuse_gaps(clean.vertices, clean.faces, clean.flat)
-    vertices, faces = used(clean.vertices, clean.faces)
-    faces = turned(faces, against_the_others(faces)[0])
-    return vertices, turned(faces, inside_out(TriangleMesh(vertices, faces)))
 
 
 def _check_size(vertices: Array, meters_per_unit: float) -> None:
@@ -143,53 +129,35 @@ def _check_size(vertices: Array, meters_per_unit: float) -> None:
 
 
 def _check_elements(mesh: TriangleMesh) -> None:
-    vertices = mesh.points
-    there = np.zeros(len(vertices), dtype=bool)
-    there[mesh.corners] = True
-    if not there.all():
-        raise InputError(None, f"vertices[{np.argmin(there)}]", "belongs to no face")
-    _, first, index = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
-    twin = first[index.reshape(-1)] != np.arange(len(vertices))
+    _, first, index = np.unique(mesh.points, axis=0, return_index=True, return_inverse=True)
+    earlier = first[index.ravel()]
+    twin = earlier != np.arange(len(mesh.points))
     if twin.any():
         vertex = int(np.argmax(twin))
-        other = int(first[index.reshape(-1)[vertex]])
-        raise InputError(None, f"vertices[{vertex}]", f"in the same place as vertex {other}")
+        message = f"in the same place as vertex {earlier[vertex]}"
+        raise InputError(None, f"vertices[{vertex}]", message)
     longest = mesh.lengths[mesh.edge_of_side].max(axis=1)
     flat = 2 * mesh.areas <= 1e-9 * longest**2
     if flat.any():
         raise InputError(None, f"faces[{np.argmax(flat)}]", "has no area")
 
 
-def summed_normals(mesh: TriangleMesh) -> Array:
-    """Sums of the adjoining faces' unit normals, weighted with their angles at the vertex.
-
-    trimesh's own vertex normals already have length 1, so they do not reveal faces that cancel out.
-    """
-    angles = trimesh.triangles.angles(mesh.points[mesh.corners])
-    normals = np.zeros_like(mesh.points)
-    np.add.at(normals, mesh.corners, angles[:, :, None] * mesh.triangle_normals[:, None])
-    return normals
-
-
 def _coordinates(value: Any) -> Array:
-    vertices: Array = np.array(value, dtype=np.float64)
-    _check_triples(vertices)
-    return vertices
+    return _triples(np.array(value, dtype=np.float64))
 
 
 def _indices(value: Any) -> Faces:
     given = np.array(value)
     if given.dtype.kind not in "iu":
         raise ValueError("needs whole numbers")
-    faces: Faces = given.astype(np.int64)
-    _check_triples(faces)
-    return faces
+    return _triples(given.astype(np.int64))
 
 
-def _check_triples(array: NDArray[Any]) -> None:
+def _triples(array: NDArray[Any]) -> NDArray[Any]:
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"needs three columns, has the shape {array.shape}")
     array.setflags(write=False)
+    return array
 
 
 class ArraysObject(Part):

@@ -20,13 +20,13 @@ import igl.predicates
 import numpy as np
 import trimesh
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, numbered
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming, system_errors
-from cellcolor.frontend.parts.mesh import check_corners, mesh_surface
-from cellcolor.frontend.parts.surface import Faces, Part, Surface, check_faces
+from cellcolor.frontend.parts.mesh import mesh_surface
+from cellcolor.frontend.parts.surface import MOST_VERTICES, Faces, Part, Surface
 from cellcolor.frontend.tables import Positive
-from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.mesh.triangle_mesh import TriangleMesh, check_corners
 
 _MOST_BYTES = 200_000_000  # some millions of triangles; reading takes ten times as much memory
 _PLY_CORNERS = ("vertex_indices", "vertex_index")
@@ -46,46 +46,35 @@ class MeshObject(Part):
     NEWER = ("flip",)
 
     def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:
-        """The mesh as it is, or refined or repaired on request; see :func:`load_mesh`."""
-        units, longest = self.meters_per_unit, self.max_edge_m
-        return load_mesh(folder / self.file, units, longest, self.repair, deadline, self.flip)
+        """The mesh, checked, or refined or repaired on request.
 
+        See :func:`~cellcolor.frontend.parts.mesh.mesh_surface`. STL has no shared vertices, so
+        there the corners with equal coordinates are one vertex. With ``flip`` the faces are turned
+        over; of an open mesh the other side is then the outside.
 
-def load_mesh(
-    file: Path,
-    meters_per_unit: float,
-    max_edge_m: float | None = None,
-    mend: bool = False,
-    deadline: Deadline = NEVER,
-    flip: bool = False,
-) -> Surface:
-    """A mesh file as a surface, checked; see :func:`~cellcolor.frontend.parts.mesh.mesh_surface`.
-
-    STL has no shared vertices, so there the corners with equal coordinates are one vertex.
-
-    Args:
-        max_edge_m, mend: see :func:`~cellcolor.frontend.parts.mesh.mesh_surface`.
-        deadline: when to give up; not looked at while another library reads the file.
-        flip: turn the faces over; of an open mesh the other side is then the outside.
-
-    Raises:
-        InputError: missing or unreadable file, or the mesh cannot be used; names file and element.
-    """
-    try:
-        vertices, faces = read_mesh(file, deadline)
-        check_faces(len(faces))
-        faces = np.ascontiguousarray(faces[:, ::-1]) if flip else faces
-        return mesh_surface(vertices, faces, meters_per_unit, max_edge_m, mend, deadline)
-    except InputError as error:
-        # Of halving edges the scene is to blame, which alone can say that it was asked for.
-        if error.field == "max_edge_m":
-            raise
-        message = error.message
-        if error.field and error.field.startswith(("faces[", "vertices[")):
-            # A scene repairs less than the command does.
-            command = f"cellcolor repair {file} -o {file.stem}-repaired.obj"
-            message += f"; repair it first: {command}" if mend else ""
-        raise InputError(error.file or str(file), error.field, message) from error
+        Raises:
+            InputError: missing or unreadable file, or the mesh cannot be used; names file and
+                element.
+        """
+        file = folder / self.file
+        try:
+            vertices, faces = read_mesh(file, deadline)
+            if len(faces) > 3 * MOST_VERTICES:  # there are two for each vertex, more with handles
+                message = f"there are {len(faces):,}, at most {MOST_VERTICES:,} vertices fit"
+                raise InputError(None, "faces", message)
+            faces = np.ascontiguousarray(faces[:, ::-1]) if self.flip else faces
+            units, longest = self.meters_per_unit, self.max_edge_m
+            return mesh_surface(vertices, faces, units, longest, self.repair, deadline)
+        except InputError as error:
+            # Of halving edges the scene is to blame, which alone can say that it was asked for.
+            if error.field == "max_edge_m":
+                raise
+            message = error.message
+            if error.field and error.field.startswith(("faces[", "vertices[")):
+                # A scene repairs less than the command does.
+                command = f"cellcolor repair {file} -o {file.stem}-repaired.obj"
+                message += f"; repair it first: {command}" if self.repair else ""
+            raise InputError(error.file or str(file), error.field, message) from error
 
 
 def read_mesh(file: Path, deadline: Deadline = NEVER) -> tuple[Array, Faces]:
@@ -212,7 +201,7 @@ def _ply_faces(mesh: trimesh.Trimesh) -> Faces:
     rows = [np.asarray(row, dtype=np.int64) for row in (data[name] if text else data[name]["f1"])]
     sizes = np.array([len(row) for row in rows])
     vertices = np.asarray(mesh.vertices)
-    check_corners(vertices, np.asarray(mesh.faces))
+    check_corners(np.asarray(mesh.faces), len(vertices))
     return triangulated(vertices, np.concatenate(rows), sizes, lambda face: f"faces[{face}]")
 
 
@@ -273,57 +262,45 @@ def triangulated(
     Raises:
         InputError: a face crosses itself, so no triangles fill it, or it is far from flat.
     """
-    of = np.repeat(np.arange(len(sizes)), sizes - 2)
+    of, number = numbered(sizes - 2)
     starts = np.cumsum(sizes) - sizes
     first = starts[of]
-    onward = first + np.arange(len(of)) - (starts - 2 * np.arange(len(sizes)))[of]
-    faces: Faces = corners[np.column_stack([first, onward + 1, onward + 2])].reshape(-1, 3)
+    faces: Faces = corners[np.column_stack([first, first + number + 1, first + number + 2])]
     places = np.nan_to_num(vertices)  # what is not finite is refused elsewhere
-    cut = sizes[of] > 3
-    for face in np.flatnonzero(_leaving(places, faces[cut], of[cut], len(sizes))).tolist():
+    for face in np.flatnonzero(_beside(places, faces, of)[0]).tolist():
         own = corners[starts[face] :][: sizes[face]]
         ears, _ = igl.predicates.polygons_to_triangles(places, own, np.array([0, len(own)]))
         alone = np.zeros(len(ears), dtype=np.int64)
-        if len(ears) != len(own) - 2 or _leaving(places, ears, alone, 1)[0]:
+        if len(ears) != len(own) - 2 or _beside(places, ears, alone)[0].any():
             message = f"the face of {len(own)} corners crosses itself: no triangles fill it"
             raise InputError(None, name(face), message)
         faces[of == face] = ears
-    _refuse_bent(places, faces, of, sizes, name)
+    bent = _beside(places, faces, of)[1]
+    if bent.max(initial=0.0) > _BENT:
+        at = np.flatnonzero(bent > _BENT)[0]
+        message = (
+            f"the face of {sizes[of[at]]} corners is far from flat, a part of it "
+            f"{np.degrees(bent[at]):.0f} degrees off the whole: triangles have to say where it "
+            "bends"
+        )
+        raise InputError(None, name(int(of[at])), message)
     return faces
 
 
-def _leaving(vertices: Array, triangles: Faces, of: Index, faces: int) -> Mask:
-    """Of which faces (faces,) some triangle lies outside, by the face ``of`` each (m,)."""
-    along, area, size = _along_face(vertices, triangles, of, faces)
-    least = np.full(faces, np.inf)
-    np.minimum.at(least, of, along)
-    return np.asarray((least < -_AGAINST * size * area) | (size < _AGAINST * area))
+def _beside(vertices: Array, triangles: Faces, of: Index) -> tuple[Mask, Array]:
+    """Which faces have a triangle that lies outside, and how far triangles (m,) are off them, rad.
 
-
-def _refuse_bent(
-    vertices: Array, triangles: Faces, of: Index, sizes: Index, name: Callable[[int], str]
-) -> None:
-    """Refuse a face of more than three corners that is far from flat: where it bends is open."""
-    along, _, size = _along_face(vertices, triangles, of, len(sizes))
-    areas = np.linalg.norm(TriangleMesh(vertices, triangles).area_vectors, axis=1)
-    large = (sizes[of] > 3) & (areas > _SMALL * size[of])
-    bent = np.flatnonzero(large & (along < np.cos(_BENT) * areas * size[of]))
-    if len(bent):
-        at = bent[0]
-        angle = np.degrees(np.arccos(np.clip(along[at] / (areas[at] * size[of[at]]), -1, 1)))
-        message = (
-            f"the face of {sizes[of[at]]} corners is far from flat, a part of it {angle:.0f} "
-            "degrees off the whole: triangles have to say where it bends"
-        )
-        raise InputError(None, name(int(of[at])), message)
-
-
-def _along_face(
-    vertices: Array, triangles: Faces, of: Index, faces: int
-) -> tuple[Array, Array, Array]:
-    """Products (m,) of the area vectors of triangles and their faces; area and size of faces."""
+    Args:
+        of: (m,) the face that each triangle is a part of. Small ones say nothing of how it bends.
+    """
     mesh = TriangleMesh(vertices, triangles)
-    whole = np.zeros((faces, 3))
+    whole = np.zeros((of.max(initial=-1) + 1, 3))
     np.add.at(whole, of, mesh.area_vectors)
+    size, area = np.linalg.norm(whole, axis=1), np.bincount(of, mesh.areas)
     along = np.einsum("ij,ij->i", mesh.area_vectors, whole[of])
-    return along, np.asarray(np.bincount(of, mesh.areas, faces)), np.linalg.norm(whole, axis=1)
+    against = along < -_AGAINST * (size * area)[of]
+    outside = (np.bincount(of, against) > 0) | (size < _AGAINST * area)
+    large = 2 * mesh.areas > _SMALL * size[of]
+    with np.errstate(invalid="ignore"):
+        off = np.arccos(np.clip(along / (2 * mesh.areas * size[of]), -1, 1))
+    return np.asarray(outside), np.where(large, off, 0.0)

@@ -26,12 +26,11 @@ from cellcolor.frontend.parts.mending import (
     border_groups,
     crossing_pairs,
     flat_faces,
-    repeated_corners,
     repeated_faces,
     used,
 )
 from cellcolor.frontend.parts.surface import MOST_VERTICES, SHARP, Faces, refine
-from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.mesh.triangle_mesh import TriangleMesh, repeated_corners
 from cellcolor.processes import run_alone
 
 _MEMORY = 3072.0  # MB (2**20 bytes) that the remesher may take
@@ -62,13 +61,8 @@ class Deviation:
         )
 
 
-def expected_vertices(area: float, length: float) -> float:
-    """About how many vertices a mesh of equilateral triangles has, two triangles for each."""
-    return float(area / (np.sqrt(3) / 2 * length**2))
-
-
 def length_for(area: float, vertices: float) -> float:
-    """The edge length with which a mesh has about a given number of vertices."""
+    """The edge length with which a mesh has about so many vertices, if all triangles are equal."""
     return float(np.sqrt(area / (np.sqrt(3) / 2 * vertices)))
 
 
@@ -93,7 +87,7 @@ def remeshed(
         ModuleNotFoundError: gpytoolbox is not installed.
     """
     mesh = TriangleMesh(vertices, faces)
-    expected = expected_vertices(float(mesh.areas.sum()), length)
+    expected = float(mesh.areas.sum() / (np.sqrt(3) / 2 * length**2))
     if not _FEWEST <= expected <= MOST_VERTICES:
         message = f"gives about {expected:,.0f} vertices, {_FEWEST} to {MOST_VERTICES:,} fit"
         raise InputError(None, "edge_length_m", message)

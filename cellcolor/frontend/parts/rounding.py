@@ -67,22 +67,8 @@ def rounded(surface: Surface, radius: float, deadline: Deadline = NEVER) -> Surf
 def note_on_triangles(surface: Surface, radius: float) -> tuple[str, ...]:
     """A sentence if triangles beside sharp edges are too long for normals rounded over a radius, m.
 
-    The tool turns over the whole of such a triangle, however it is rounded.
-    """
-    longest = longest_beside_sharp(surface)
-    if longest <= radius / 2:
-        return ()
-    return (
-        f"the minimum belongs to this mesh: beside sharp edges triangles are up to "
-        f"{1e3 * longest:.2g} mm long, and normals are rounded over {1e3 * radius:g} mm; edges of "
-        f"{500 * radius:g} mm (max_edge_m = {radius / 2:g} under [object]) may give another one",
-    )
-
-
-def longest_beside_sharp(surface: Surface) -> float:
-    """The longest mesh edge that leads from a sharp edge into a face beside it, m; 0 if none does.
-
-    Normals are known at vertices, and the tool turns evenly between them.
+    Normals are known at vertices, and the tool turns evenly over the whole of a triangle between
+    them, however it is rounded.
     """
     mesh = surface.mesh
     sharp = mesh.sharp_edges(SHARP)
@@ -90,7 +76,14 @@ def longest_beside_sharp(surface: Surface) -> float:
     on[mesh.edges[sharp]] = True
     beside = np.asarray(on[mesh.edges].any(axis=1))
     beside[sharp] = False
-    return float(mesh.lengths[beside].max(initial=0.0))
+    longest = float(mesh.lengths[beside].max(initial=0.0))
+    if longest <= radius / 2:
+        return ()
+    return (
+        f"the minimum belongs to this mesh: beside sharp edges triangles are up to "
+        f"{1e3 * longest:.2g} mm long, and normals are rounded over {1e3 * radius:g} mm; edges of "
+        f"{500 * radius:g} mm (max_edge_m = {radius / 2:g} under [object]) may give another one",
+    )
 
 
 def _rims(surface: Surface) -> Array:

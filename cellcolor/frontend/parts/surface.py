@@ -34,17 +34,6 @@ def check_vertices(count: int, field: str | None = None) -> None:
         raise InputError(None, field, f"has {count:,} vertices, at most {MOST_VERTICES:,} fit")
 
 
-def check_faces(count: int) -> None:
-    """Refuse a mesh with more faces than one with as many vertices as fit can have.
-
-    It has two for each vertex, and a few more if it has handles.
-    """
-    if count > 3 * MOST_VERTICES:
-        raise InputError(
-            None, "faces", f"there are {count:,}, at most {MOST_VERTICES:,} vertices fit"
-        )
-
-
 SHARP = float(np.radians(30.0))
 """Between the normals of two faces, rad; an edge is sharp from there on."""
 

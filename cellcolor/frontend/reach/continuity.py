@@ -19,7 +19,7 @@ from cellcolor.configurations.matching import stays_within
 from cellcolor.data.surface import Crack
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.smooth import Measure, Probe, follow_edges
-from cellcolor.frontend.reach.validity import Verdicts
+from cellcolor.frontend.reach.validity_tests import Verdicts
 
 
 @dataclass(frozen=True, eq=False)

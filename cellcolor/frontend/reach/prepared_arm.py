@@ -13,21 +13,20 @@ from cellcolor.configurations.matching import CIRCLE
 from cellcolor.data.wording import looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
-from cellcolor.frontend.arm.body import Shapes
 from cellcolor.frontend.arm.inverse import (
     KINEMATICS,
     InverseKinematics,
     is_tool_on_last_axis,
     pose_at_zero,
 )
-from cellcolor.frontend.arm.kinematics import Conditioning, conditioning, task_determinants
+from cellcolor.frontend.arm.kinematics import Conditioning, conditioning
 from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.newton import stacked
 from cellcolor.frontend.arm.robot import Robot, TaskSpace
 from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at
 from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
 from cellcolor.frontend.parts.placement import rotation_from_rpy
-from cellcolor.frontend.reach.smooth import Measure
+from cellcolor.frontend.reach.smooth import Measure, Tracker
 from cellcolor.frontend.setup import Setup
 from cellcolor.memory import chunks
 
@@ -116,7 +115,8 @@ class PreparedArm:
         deadline.check()
         found = self.follow(points, directions, branches)
         limits = self.conditioning if self.setup.constraints.conditioning else None
-        return found, task_determinants(self.robot, found, limits)
+        known = Tracker(self.robot, self.measure, limits).described(found)
+        return found, np.where(known.good, np.abs(known.determinants), np.nan)
 
 
 def prepare_arm(setup: Setup) -> PreparedArm:
@@ -126,8 +126,9 @@ def prepare_arm(setup: Setup) -> PreparedArm:
         InputError: one cannot be used, or a key of the setup does not fit it; names the file.
     """
     with naming(setup.file):
-        robot = _robot(setup)
-        kinematics = _kinematics(setup, robot)
+        family = KINEMATICS.find(setup.robot.kinematics, "robot.kinematics")
+        robot = _robot(setup, family)
+        kinematics = _kinematics(setup, robot, family)
         reach = float(f"{kinematics.reach:.4g}")
         if kinematics.reach > _LONGEST:
             message = f"the arm reaches {reach} m: {looks_like_millimeters(reach)}"
@@ -136,17 +137,9 @@ def prepare_arm(setup: Setup) -> PreparedArm:
     return PreparedArm(setup, robot, kinematics, limits)
 
 
-def _family(setup: Setup) -> type[InverseKinematics]:
-    """The family of arms that a setup names."""
-    try:
-        return KINEMATICS.find(setup.robot.kinematics)
-    except InputError as error:
-        raise InputError(None, "robot.kinematics", error.message) from error
-
-
-def _kinematics(setup: Setup, robot: Robot) -> InverseKinematics:
+def _kinematics(setup: Setup, robot: Robot, family: type[InverseKinematics]) -> InverseKinematics:
     """The arm's inverse kinematics for the task of its setup."""
-    family, turn = _family(setup), setup.task.turn
+    turn = setup.task.turn
     kinematics = (
         family(robot, setup.robot)
         if turn is None
@@ -158,27 +151,13 @@ def _kinematics(setup: Setup, robot: Robot) -> InverseKinematics:
     return kinematics
 
 
-def _robot(setup: Setup) -> Robot:
+def _robot(setup: Setup, family: type[InverseKinematics]) -> Robot:
     files, folder = setup.robot, setup.folder
     arm = _urdf(files.arm_urdf, "arm_urdf", folder)
     tool = _urdf(files.tool_urdf, "tool_urdf", folder)
-    family = _family(setup)
+    force = setup.constraints.force
     robot = load_robot(
-        arm,
-        files.flange_link,
-        tool,
-        files.tip_link,
-        family.joints,
-        mounted=(files.mount_position_m, files.mount_rpy_rad),
-        fixed_joints=files.fixed_joints,
-        shapes=Shapes(
-            files.mesh_collision,
-            files.mesh_collision_of,
-            tuple(folder / name for name in files.package_folders),
-        ),
-        may_touch=files.may_touch,
-        force=setup.constraints.force,
-        prismatic=family.prismatic,
+        arm, tool, files, family.joints, family.prismatic, folder=folder, force=force
     )
     # The frame on the surface, z into it, is ahead of the tip link, and turned back.
     contact, task = np.eye(4), setup.task

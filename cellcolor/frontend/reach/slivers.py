@@ -71,9 +71,8 @@ def clean(
     graph = _CellGraph(edges, linked, node_color, cell_of, areas)
     total = float(areas.sum())
     simplified = graph.simplify(policy.simplify_below_share * total, deadline)
-    given_up = graph.give_up(policy.uncover_below_share * total)
-
-    masks = np.array(graph.final_branches(), dtype=np.int64)[cell_of]
+    branches, given_up = graph.given_up(policy.uncover_below_share * total)
+    masks = np.array(branches, dtype=np.int64)[cell_of]
     kept = (masks[:, None] >> np.arange(node_color.shape[1]) & 1).astype(bool)
     lost = (node_color >= 0).any(axis=1) & ~kept.any(axis=1)
     report = SliverReport(
@@ -136,13 +135,13 @@ class _CellGraph:
         doubtful: set[int] = set()
         queue: list[tuple[float, int, int]] = []
 
-        def ask_again(place: int) -> None:
+        def ask(place: int) -> None:
             if 0 < self._area[place] < below:
                 doubtful.add(place)
                 heapq.heappush(queue, (self._area[place], self._name[place], place))
 
         for place in range(len(self._area)):
-            ask_again(place)
+            ask(place)
         while queue:
             deadline.check()
             area, name, place = heapq.heappop(queue)
@@ -157,23 +156,15 @@ class _CellGraph:
             # The new colors may be what a neighbor has been waiting for, or the cell still small.
             around = list(self._borders[place])
             for other in {self._merge_equal(place), *map(self._places.__getitem__, around)}:
-                ask_again(other)
+                ask(other)
         return changed
 
-    def give_up(self, below: float) -> int:
-        """Take all branches from cells smaller than ``below`` (m^2); how many there were."""
-        small = [
-            place
-            for place in range(len(self._branches))
-            if self._places[place] == place and self._branches[place] and self._area[place] < below
-        ]
-        for place in small:
-            self._branches[place] = 0
-        return len(small)
-
-    def final_branches(self) -> list[Branches]:
-        """The branches of each original cell."""
-        return [self._branches[self._places[cell]] for cell in range(len(self._branches))]
+    def given_up(self, below: float) -> tuple[list[Branches], int]:
+        """The branches of each original cell, none if it is smaller than ``below`` (m^2) even with
+        those that it has become one with; and how many are given up."""
+        places = [self._places[cell] for cell in range(len(self._branches))]
+        small = {at for at in places if self._branches[at] and self._area[at] < below}
+        return [0 if at in small else self._branches[at] for at in places], len(small)
 
     def _part_of_its_own(self, place: int) -> Branches | None:
         """The branches that a cell would take over from a neighbor."""

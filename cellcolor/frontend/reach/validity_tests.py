@@ -1,7 +1,8 @@
-"""What makes a configuration valid: what tests look at, the kinds of ``[[validity_test]]`` that a
-scene may add, and the tests of the paper's three constraints (section III-A).
+"""Which configurations are valid, and the first reason why the others are not.
 
-These are: collision-free and kinematically possible, able to exert the force, well conditioned.
+What tests look at, the kinds of ``[[validity_test]]`` that a scene may add, the tests of the
+paper's three constraints (section III-A), and the judge that makes them all. The constraints are:
+collision-free and kinematically possible, able to exert the force, well conditioned.
 Cheap tests come first; each looks only at what is left.
 """
 
@@ -14,8 +15,11 @@ from functools import cached_property
 from typing import ClassVar, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
+from cellcolor.data.candidate_table import VALID
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.arm.kinematics import (
     Poses,
@@ -27,10 +31,11 @@ from cellcolor.frontend.arm.kinematics import (
 )
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, Pair, pairs_of, pairs_with
-from cellcolor.frontend.contact.tip import Tip, body_ends
+from cellcolor.frontend.contact.tip import Tip, body_ends, tracked_points, tracked_steps
 from cellcolor.frontend.reach.prepared_arm import PreparedArm
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.tables import Registry, Table
+from cellcolor.memory import check_memory, chunks
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,16 +127,6 @@ class Postures:
     def __len__(self) -> int:
         return len(self.configurations)
 
-    @property
-    def tip(self) -> Array:
-        """(k, 3) where the tool's tip is, in the world, m."""
-        return self.poses.tip
-
-    @property
-    def tool_axis(self) -> Array:
-        """(k, 3) unit vectors from the flange to the tip, in the world."""
-        return self.poses.tool_axis
-
 
 class ValidityTest(Table):
     """A test that candidates pass or fail.
@@ -185,7 +180,7 @@ def _beyond_limits(postures: Postures) -> Mask:
 
 def _tip_blocked(postures: Postures) -> Mask:
     """At a vertex this is so for all branches that have a solution, or for none."""
-    return postures.workplace.tip.blocked(postures.tip, postures.tool_axis)
+    return postures.workplace.tip.blocked(postures.poses.tip, postures.poses.tool_axis)
 
 
 def _too_weak(postures: Postures) -> Mask:
@@ -262,3 +257,121 @@ STANDARD_TESTS = (
     _contact("obstacle collision", "move the part or the obstacles farther apart"),
     _contact("object collision", "use a longer or thinner tool, or turn the part"),
 )
+
+NO_SOLUTION = 1
+"""The code where a branch does not reach the pose, so that there is nothing to test."""
+STANDARD_REASONS = ("valid", "no solution", *(test.name for test in STANDARD_TESTS))
+"""What the first codes mean."""
+
+
+@dataclass(frozen=True, eq=False)
+class Verdicts:
+    """What became of configurations (k,), or of all branches at all vertices (n, branches).
+
+    Attributes:
+        configurations: (..., joints) in rad, turned into the limits where possible; NaN without
+            solution.
+        reasons: (...) uint8 codes, which index ``reason_names``.
+        determinants: (...) task determinant in m^3, NaN without solution.
+        tracked: (points, ..., 3) of the bodies that can move, in the world, m, see
+            :func:`~cellcolor.frontend.contact.tip.tracked_points`; NaN as above.
+        reason_names: valid, no solution, and the tests in the order of testing.
+    """
+
+    configurations: Array
+    reasons: NDArray[np.uint8]
+    determinants: Array
+    tracked: Array
+    reason_names: tuple[str, ...]
+
+    @property
+    def valid(self) -> Mask:
+        """(...)."""
+        return np.asarray(self.reasons == VALID)
+
+
+def turned_into_limits(robot: Robot, configurations: Array) -> Array:
+    """Turn joints by full circles into their limits; prismatic ones stay where they are.
+
+    An angle inside its limits stays as it is; another one takes the smallest equivalent that is not
+    below them, which is beyond them if none is inside.
+    """
+    circle = 2 * np.pi
+    turned = configurations + circle * np.ceil((robot.lower - configurations) / circle)
+    inside = (configurations >= robot.lower) & (configurations <= robot.upper)
+    return np.where(inside | robot.slides, configurations, turned)
+
+
+class Judge:
+    """The tests of one workplace: the standard ones, then those that the scene adds.
+
+    Attributes:
+        reason_names: of the codes of verdicts: valid, no solution, and the tests in the order of
+            testing, whether the setup leaves them out or not.
+        tracked_steps: (points,) how far those of :attr:`Verdicts.tracked` may move between two
+            tests, m.
+    """
+
+    def __init__(
+        self,
+        workplace: Workplace,
+        added: tuple[ValidityTest, ...] = (),
+        left_out: frozenset[str] = frozenset(),
+    ) -> None:
+        """The tests of a workplace."""
+        self._workplace = workplace
+        # Two tests of one kind, with other keys, are one reason.
+        self.reason_names = tuple(dict.fromkeys([*STANDARD_REASONS, *(t.name for t in added)]))
+        on = workplace.setup.constraints
+        tests: list[StandardTest | ValidityTest] = [
+            test for test in STANDARD_TESTS if getattr(on, test.constraint)
+        ]
+        self._tests = tuple(test for test in [*tests, *added] if test.name not in left_out)
+        margins = workplace.setup.margins
+        least = min(margins.to_object_m, margins.to_obstacles_m, margins.to_ground_m)
+        self.tracked_steps = tracked_steps(workplace.robot, least, margins.between_links_m)
+
+    def __call__(self, configurations: Array, deadline: Deadline = NEVER) -> Verdicts:
+        """Test configurations (..., joints) in rad, NaN where there is none.
+
+        Raises:
+            TooLarge: the verdicts would not fit into the machine's memory.
+        """
+        *shape, joints = configurations.shape
+        asked = configurations.reshape(-1, joints)
+        count, points = len(asked), len(self.tracked_steps)
+        # Of millions the ends of all bodies are a gigabyte: there is to be no second copy.
+        # Solids have many points, which single precision makes up for: a tenth of a micrometer does
+        # not matter to how far bodies move.
+        place = np.float32 if self._workplace.robot.has_solids else np.float64
+        kept = 8 * joints + 9 + 24 * points
+        check_memory(count * kept, f"judging {count:,} configurations of the arm")
+        moved = asked.copy()
+        reasons = np.full(count, NO_SOLUTION, np.uint8)
+        determinants, tracked = np.full(count, np.nan), np.full((points, count, 3), np.nan, place)
+        robot = self._workplace.robot
+        for part in chunks(count):
+            deadline.check()
+            rows = part.start + np.flatnonzero(~np.isnan(asked[part, 0]))
+            moved[rows] = turned_into_limits(robot, asked[rows])
+            postures = Postures.of(self._workplace, moved[rows])
+            determinants[rows] = postures.determinant
+            tracked[:, rows] = tracked_points(robot, postures.ends, postures.poses)
+            reasons[rows] = self._first_failures(postures)
+        return Verdicts(
+            moved.reshape(configurations.shape),
+            reasons.reshape(shape),
+            determinants.reshape(shape),
+            tracked.reshape(points, *shape, 3),
+            self.reason_names,
+        )
+
+    def _first_failures(self, postures: Postures) -> NDArray[np.uint8]:
+        """The code (k,) of the first test that each posture fails."""
+        reasons = np.full(len(postures), VALID, dtype=np.uint8)
+        left = np.arange(len(postures))
+        for test in self._tests:
+            failed = test.failed(postures)
+            reasons[left[failed]] = self.reason_names.index(test.name)
+            left, postures = left[~failed], postures.without(failed)
+        return reasons

@@ -19,9 +19,8 @@ from cellcolor.decomposition import decompose
 from cellcolor.errors import CellcolorError, InputError, RefusedResult, SolverMissing, TooLarge
 from cellcolor.lab.families.registry import GROWING, LARGE, MEDIUM, SMALL, Family
 from cellcolor.lab.runs.table import LATE, Key, Row, Status
-from cellcolor.lab.workers import Task, Workers, as_they_end
 from cellcolor.machine import this_machine
-from cellcolor.processes import Ended
+from cellcolor.processes import Ended, Task, as_they_end
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.registry import solver_version
 
@@ -67,21 +66,14 @@ class Specimen:
     make: Callable[[], Instance]
 
 
-def family_names() -> list[str]:
-    """All families, as ``set/family``."""
-    return list(FAMILIES)
-
-
-def families_like(pattern: str) -> list[str]:
-    """The families meant by the name of a set, or by ``set/family`` with ``*`` and ``?`` in it."""
+def families(pattern: str, seeds: Iterable[int]) -> list[list[Specimen]]:
+    """The instances of families: of a set by its name, or ``set/family`` with ``*`` and ``?``."""
     wanted = f"{pattern}/*" if pattern in _SETS else pattern
-    return [name for name in FAMILIES if fnmatchcase(name, wanted)]
-
-
-def of_family(name: str, seeds: Iterable[int]) -> list[Specimen]:
-    """Instances of a family, such as ``medium/thin``."""
-    make = partial(_made, FAMILIES[name])
-    return [Specimen(name, seed, f"{name}, seed {seed}", partial(make, seed)) for seed in seeds]
+    return [
+        [Specimen(name, n, f"{name}, seed {n}", partial(_made, family, n)) for n in seeds]
+        for name, family in FAMILIES.items()
+        if fnmatchcase(name, wanted)
+    ]
 
 
 def taking_turns(groups: Sequence[Sequence[Specimen]]) -> Iterator[Specimen]:
@@ -165,13 +157,17 @@ class Sweep:
     skipped: int = 0
 
     @property
-    def runs_of_each(self) -> int:
-        """Runs on one instance."""
+    def runs(self) -> int:
+        """How many there are, those that are skipped among them."""
+        return len(self.subjects) * self._of_each
+
+    @property
+    def _of_each(self) -> int:
         return len(self.limits) * self.repetitions * len(self.contestants)
 
-    def run(self, workers: Workers) -> Iterator[Row]:
-        """A row for each run, as they end."""
-        for known, ended in as_they_end(workers, self._tasks()):
+    def run(self, jobs: int) -> Iterator[Row]:
+        """A row for each run, as they end, so many at a time."""
+        for known, ended in as_they_end(jobs, self._tasks()):
             yield _row(known, ended)
 
     def _tasks(self) -> Iterator[tuple[dict[str, Any], Task]]:
@@ -181,7 +177,7 @@ class Sweep:
                 instance = subject.make()
             except CellcolorError as error:
                 self.complain(subject, error)
-                self.skipped += self.runs_of_each
+                self.skipped += self._of_each
                 continue
             of_instance = {
                 "family": subject.family,

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import csv
 import io
-import os
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from fcntl import LOCK_EX, LOCK_NB, flock
+from io import FileIO
 from os import PathLike
 from pathlib import Path
 from typing import Literal, TypeVar
@@ -177,61 +178,55 @@ def read_table(path: str | PathLike[str]) -> list[Row]:
         return _rows(Path(path).read_bytes(), str(path))
 
 
-class TableFile:
-    """A table that is being written; a file that is there is continued.
-
-    Every row is one line, and is handed to the system whole, so that a process that is killed
-    leaves a readable file. Nobody else can continue it at the same time.
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table that is being written.
 
     Attributes:
         rows: all there are, those of earlier sessions first.
-
-    Raises:
-        InputError: the file cannot be used, is another table, or is being written to.
+        file: where they are; None for a table without a file.
     """
 
-    def __init__(self, path: Path) -> None:
-        with system_errors(path, "cannot be written"):
-            self._handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
-        try:
-            self.rows = self._begin(path)
-        except BaseException:
-            os.close(self._handle)
-            raise
-
-    def _begin(self, path: Path) -> list[Row]:
-        """The rows that are there, in a file that ends with a whole line."""
-        try:
-            flock(self._handle, LOCK_EX | LOCK_NB)
-        except OSError as error:
-            raise InputError(str(path), None, "is being written by another process") from error
-        content, header = path.read_bytes(), _line(_COLUMNS)
-        if header.startswith(content):  # empty, or cut off in its first line
-            os.ftruncate(self._handle, 0)
-            os.write(self._handle, header)
-            return []
-        rows = _rows(content, str(path))
-        os.ftruncate(self._handle, content.rfind(b"\n") + 1)
-        return rows
+    rows: list[Row]
+    file: FileIO | None = None
 
     def append(self, row: Row) -> None:
-        """Add a row, at once.
+        """Add a row, at once, and handed to the system whole: a kill leaves a readable file.
 
         Raises:
             InputError: it cannot be written.
         """
-        line = _line([_text(getattr(row, name)) for name in _COLUMNS])
-        try:
-            os.write(self._handle, line)
-        except OSError as error:
-            raise InputError(None, "output", error.strerror or "cannot be written") from error
+        if self.file is not None:
+            with system_errors(str(self.file.name), "cannot be written"):
+                self.file.write(_line([_text(getattr(row, name)) for name in _COLUMNS]))
         self.rows.append(row)
 
-    def __enter__(self) -> TableFile:
-        return self
 
-    def __exit__(self, *_: object) -> None:
-        os.close(self._handle)
+@contextmanager
+def continued(path: Path | None) -> Iterator[Table]:
+    """The table of a file, to be written by nobody else at the same time; None for no file.
+
+    Raises:
+        InputError: the file cannot be used, is another table, or is being written to.
+    """
+    if path is None:
+        yield Table([])
+        return
+    with system_errors(path, "cannot be written"):
+        file = FileIO(path, "a+")
+    with file:
+        try:
+            flock(file, LOCK_EX | LOCK_NB)
+        except OSError as error:
+            raise InputError(str(path), None, "is being written by another process") from error
+        content, header = path.read_bytes(), _line(_COLUMNS)
+        if header.startswith(content):  # empty, or cut off in its first line
+            content = b""
+        rows = _rows(content, str(path)) if content else []
+        file.truncate(content.rfind(b"\n") + 1)
+        if not content:
+            file.write(header)
+        yield Table(rows, file)
 
 
 def _line(cells: Sequence[str]) -> bytes:

@@ -11,9 +11,7 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count, listed
 from cellcolor.pictures.report_page.content import Answers, Card, MotionReport
-from cellcolor.questions.answers import Explanation, Front
-from cellcolor.questions.placements import Placements
-from cellcolor.questions.set_ups import SetUpPlan
+from cellcolor.questions.answers import Front
 
 _SHOWN = 12  # faults
 
@@ -319,19 +317,10 @@ def _left_out(report: MotionReport) -> Card | None:
     return Card("Left out", (text,), (head, *rows))
 
 
-_ANSWERS: dict[type[Answers], str] = {
-    Front: "Lift-offs against area",
-    Explanation: "What costs a lift-off",
-    Placements: "Where the part could stand",
-    SetUpPlan: "Several set-ups",
-}
-
-
 def _answer(answer: Answers) -> Card:
     """What the command prints; of a front a table, whose rows show what they cover."""
-    title = _ANSWERS[type(answer)]
     if not isinstance(answer, Front):
-        return Card(title, tuple(str(answer).splitlines()))
+        return Card("What costs a lift-off", tuple(str(answer).splitlines()))
     texts = [
         "The most that each number of lift-offs can cover, of the area with a color. A click on a "
         "row shows it on the part."
@@ -343,7 +332,8 @@ def _answer(answer: Answers) -> Card:
         for point in answer
     ]
     modes = tuple(point.in_short for point in answer)
-    return Card(title, tuple(texts), (("lift-offs", "covered", "proof"), *rows), modes=modes)
+    head = ("lift-offs", "covered", "proof")
+    return Card("Lift-offs against area", tuple(texts), (head, *rows), modes=modes)
 
 
 def _place(place: tuple[float, float, float]) -> str:

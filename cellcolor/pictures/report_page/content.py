@@ -13,8 +13,6 @@ from cellcolor.decomposition import Decomposition
 from cellcolor.frontend import BuildResult
 from cellcolor.painting.paint import Painted
 from cellcolor.questions.answers import Explanation, Front
-from cellcolor.questions.placements import Placements
-from cellcolor.questions.set_ups import SetUpPlan
 
 
 @dataclass(frozen=True)
@@ -38,7 +36,7 @@ class Card:
     times: tuple[float | None, ...] = ()
 
 
-Answers = Front | Explanation | Placements | SetUpPlan
+Answers = Front | Explanation
 """What a page can tell besides the plan."""
 
 

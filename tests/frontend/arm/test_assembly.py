@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembled import load_robot
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
@@ -14,7 +15,6 @@ from shipped import ROBOTS
 
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.urdf import Urdf, parse_urdf
 from cellcolor.frontend.setup import Setup
@@ -144,7 +144,7 @@ def test_continuous_joints_have_no_limits() -> None:
 def test_a_tool_is_where_it_is_mounted(
     position: tuple[float, float, float], rpy: tuple[float, float, float]
 ) -> None:
-    plain, moved = load(), load(mounted=(position, rpy))
+    plain, moved = load(), load(mount_position_m=position, mount_rpy_rad=rpy)
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = Rotation.from_euler("xyz", rpy).as_matrix(), position
     flange = plain.tip @ np.linalg.inv(_translation(0.1))
@@ -166,7 +166,7 @@ def test_any_frame_on_the_last_link_is_a_flange(name: str) -> None:
     arm = arm_with("</robot>", frame)
     tool = parse_urdf(TOOL.read_text(), Path("tool.urdf"))
     robot = load_robot(arm, name, tool, "tool_tip")
-    moved = load(mounted=((0.01, 0, 0.02), (0, 0, 0.5)))
+    moved = load(mount_position_m=(0.01, 0, 0.02), mount_rpy_rad=(0, 0, 0.5))
     assert robot.tip == pytest.approx(moved.tip, abs=1e-12)
     with pytest.raises(InputError, match=f"not in the arm, which has '{name}'"):
         load_robot(arm, "hand", tool, "tool_tip")

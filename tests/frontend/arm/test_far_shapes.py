@@ -6,11 +6,11 @@ import re
 from pathlib import Path
 
 import pytest
+from assembled import load_robot
 from shipped import ROBOTS, TOP
 
 from cellcolor.errors import InputError
 from cellcolor.frontend import Scene
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.notes import notes_on_shapes
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.prepared import prepare
@@ -78,5 +78,5 @@ def test_a_base_in_millimeters_is_not_blamed_on_the_part() -> None:
 def test_no_shipped_arm_is_warned_of(robot: str) -> None:
     file = ROBOTS / f"{robot}.urdf"
     arm = parse_urdf(file.read_text(), file, ROBOTS)
-    flange = next(link for link in ("tool0", "flange", "wrist_3_link") if link in arm.parent)
+    flange = next(link for link in ("tool0", "flange", "wrist_3_link") if link in arm.links)
     assert not notes_on_shapes(load_robot(arm, flange, TOOL, "tool_tip", force=False))

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from assembled import load_robot
 from shipped import ROBOTS
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.urdf import parse_urdf
 
@@ -35,7 +35,7 @@ def load(*, tool: str = "", fixed_joints: dict[str, float] | None = None) -> Rob
     own = TOOL.read_text().replace("</robot>", tool + "</robot>")
     tool_urdf = parse_urdf(own, TOOL)
     return load_robot(
-        ARM, "wrist_3_link", tool_urdf, "tool_tip", fixed_joints=fixed_joints, force=False
+        ARM, "wrist_3_link", tool_urdf, "tool_tip", fixed_joints=fixed_joints or {}, force=False
     )
 
 

@@ -14,23 +14,21 @@ import dh_arms
 import numpy as np
 import pinocchio as pin
 import pytest
+from assembled import load_robot
+from dh_arms import FILES, LOCKED
 from independent import wrapped
 from shipped import ROBOTS
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics, check_tool_on_last_axis
-from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.arm.urdf import parse_urdf
-from cellcolor.frontend.setup import RobotFiles, Turn
+from cellcolor.frontend.setup import Turn
 
 pytestmark = pytest.mark.second
 
-FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")
-LOCKED = FILES.varied(locked_joint_6_rad=0.4)
 OUT, BACK, TILTED = "0 0 0.4", f"{np.pi} 0 0.4", "0.3 0 0"
 UPPER, FORE, HAND = (0.3, 0, 0.2, 0), (0.25, 0, 0, 0), (0, 0, -0.1, 0)
 LINKS = {
@@ -163,11 +161,11 @@ def test_a_tool_that_no_joint_can_tilt_must_not_be_tilted(family: str) -> None:
 
 def mounted(position: tuple[float, float, float], rpy: tuple[float, float, float]) -> Robot:
     files = (ROBOTS / "ur5.urdf", "wrist_3_link", ROBOTS / "polishing_tool.urdf", "tool_tip")
-    return load_robot(*files, mounted=(position, rpy))
+    return load_robot(*files, mount_position_m=position, mount_rpy_rad=rpy)
 
 
 def check(robot: Robot) -> None:
-    check_tool_on_last_axis(robot, forward(robot, np.zeros((1, 6))), "not that arm")
+    KINEMATICS.find("ur")(robot, FILES.varied(locked_joint_6_rad=0.0))
 
 
 def test_off_by_a_mount() -> None:

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import importlib
 import sys
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pinocchio as pin
 import pytest
+from pinocchio_reading import readable
 from shipped import ROBOTS
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.loading import pinocchio_model
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.urdf import load_urdf
 from cellcolor.frontend.contact.engine import Contacts, pairs_of
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.setup import Setup
@@ -52,6 +56,24 @@ def test_files_are_what_the_tables_give() -> None:
         assert (ROBOTS / name).read_text(encoding="utf-8") == text, "run models/robots/make.py"
     handmade = {"ur5.urdf", "polishing_tool.urdf", "camera.urdf", "kr6_r700_z200.urdf"}
     assert handmade | set(written) >= {file.name for file in ROBOTS.glob("*.urdf")}
+
+
+@pytest.mark.parametrize("file", sorted(ROBOTS.glob("*.urdf")), ids=lambda file: file.stem)
+def test_pinocchio_reads_the_same(file: Path) -> None:
+    """Where each link is, and what holds all of them against gravity."""
+    ours, theirs = pinocchio_model(load_urdf(file)), pin.buildModelFromXML(readable(file))
+    assert list(ours.names[1:]) == list(theirs.names[1:])
+    data, other = ours.createData(), theirs.createData()
+    for q in np.random.default_rng(1).uniform(-1, 1, (5, ours.nq)):
+        pin.framesForwardKinematics(ours, data, q)
+        pin.framesForwardKinematics(theirs, other, q)
+        links = [frame.name for frame in theirs.frames if frame.type == pin.FrameType.BODY]
+        for link in links:
+            there = other.oMf[theirs.getFrameId(link, pin.FrameType.BODY)].homogeneous
+            here = data.oMf[ours.getFrameId(link, pin.FrameType.BODY)].homogeneous
+            assert np.allclose(here, there, atol=1e-12)
+        torques = pin.computeGeneralizedGravity(theirs, other, q)
+        assert np.allclose(pin.computeGeneralizedGravity(ours, data, q), torques, atol=1e-10)
 
 
 def denavit_hartenberg(constants: tuple[float, ...], q: Array) -> list[Array]:

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembled import load_robot
 from shipped import ROBOTS
 
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.urdf import parse_urdf
 
 TOOL = """<robot name="tool"><link name="body"/>
@@ -25,7 +25,7 @@ def warnings(
         flange,
         parse_urdf(TOOL.format(xyz=xyz, rpy=rpy), Path("tool.urdf")),
         "tip",
-        mounted=((0.0, 0.0, 0.0), (mounted, 0.0, 0.0)),
+        mount_rpy_rad=(mounted, 0.0, 0.0),
         force=False,
     )
     return [text for text in robot.warnings if "flange" in text]

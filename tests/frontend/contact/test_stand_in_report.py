@@ -9,16 +9,15 @@ import pytest
 import trimesh
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.body import mesh_body
-from cellcolor.frontend.arm.notes import StandInReport, measured
+from cellcolor.frontend.arm.body import MeshBody, mesh_body
 from cellcolor.frontend.setup import MeshCollision
 
 pytestmark = pytest.mark.second
 
 
-def reported(mesh: trimesh.Trimesh, chosen: MeshCollision) -> StandInReport:
+def reported(mesh: trimesh.Trimesh, chosen: MeshCollision) -> MeshBody:
     vertices, faces = np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)
-    return measured(mesh_body("link", 1, Path("folder/link.stl"), vertices, faces, chosen))
+    return mesh_body("link", 1, Path("folder/link.stl"), vertices, faces, chosen)
 
 
 @pytest.mark.parametrize(("apart", "warned"), [(0.039, False), (0.042, True)])

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from assembled import load_robot
 from hypothesis import given
 from hypothesis import strategies as st
 from meshed_arm import link_meshes, write_package
 from shipped import ROBOTS
 
 from cellcolor.frontend.arm.kinematics import forward, turned
-from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.tip import (
     body_ends,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -98,19 +97,6 @@ def test_by_a_region_between_sharp_edges() -> None:
     assert (grown.normals == sheet.normals).all()  # those of the shape, not of its faces
 
 
-def test_by_a_list(tmp_path: Path) -> None:
-    whole = block()
-    picked = np.flatnonzero((whole.vertices[whole.faces][:, :, 2] == 0.03).all(axis=1))
-    (tmp_path / "faces.txt").write_text("\n".join(map(str, picked)) + "\n\n")
-    patch = Cover(faces_file="faces.txt").patch(whole, tmp_path)
-    assert np.allclose(middles(patch)[:, 2], 0.03) and len(patch.faces) == len(picked)
-    for line, message in (("x", "needs the number"), ("99999", "there is no face 99999")):
-        (tmp_path / "faces.txt").write_text(f"0\n{line}\n")
-        with pytest.raises(InputError, match=message) as caught:
-            Cover(faces_file="faces.txt").patch(whole, tmp_path)
-        assert caught.value.field == "line 2"
-
-
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
@@ -124,22 +110,23 @@ def test_what_is_no_patch(keys: dict[str, Any], message: str) -> None:
     assert caught.value.field == "cover"
 
 
-def test_a_patch_that_meets_itself_in_a_point(tmp_path: Path) -> None:
+def test_a_patch_that_meets_itself_in_a_point(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two faces with one corner in common; the object's own number of it is named."""
     whole = block()
     first = whole.faces[0]
     shared = np.isin(whole.faces, first).sum(axis=1)
     second = int(np.flatnonzero(shared == 1)[0])
     (corner,) = set(first.tolist()) & set(whole.faces[second].tolist())
-    (tmp_path / "faces.txt").write_text(f"0\n{second}\n")
+    both = np.isin(np.arange(len(whole.faces)), [0, second])
+    monkeypatch.setattr(Cover, "chosen", lambda *_: both)
     with pytest.raises(InputError, match=rf"cannot be covered: vertices\[{corner}\]: ") as caught:
-        Cover(faces_file="faces.txt").patch(whole, tmp_path)
+        Cover(component=0).patch(whole)
     assert caught.value.field == "cover"
     # By its place where edges were halved, since no file has that number.
     halved = replace(whole, divided=(whole.mesh, np.arange(len(whole.faces))))
     place = ", ".join(f"{x:.4g}" for x in whole.vertices[corner])
     with pytest.raises(InputError, match=re.escape(f"cannot be covered: near ({place}) m: ")):
-        Cover(faces_file="faces.txt").patch(halved, tmp_path)
+        Cover(component=0).patch(halved)
 
 
 @pytest.mark.parametrize(
@@ -177,10 +164,3 @@ def test_the_rest_is_not_to_be_hit() -> None:
     # Without the rest there is less to hit.
     alone = half.varied(collision_object=(prepare(half).scene.object.varied(radius_m=0.001)))
     assert (build_surface(alone).reasons == 0).sum() > (part.reasons == 0).sum()
-
-
-def test_a_list_goes_with_the_faces_of_the_file_only() -> None:
-    table = {"kind": "mesh", "file": "x.obj", "meters_per_unit": 1.0, "max_edge_m": 0.01}
-    with pytest.raises(InputError, match="cannot be combined with max_edge_m") as caught:
-        shipped("wok").varied(object=table, cover={"faces_file": "faces.txt"})
-    assert caught.value.field == "cover.faces_file"

@@ -23,7 +23,7 @@ from cellcolor.frontend.reach.continuity import (
     link,
 )
 from cellcolor.frontend.reach.smooth import Measure
-from cellcolor.frontend.reach.validity import Verdicts
+from cellcolor.frontend.reach.validity_tests import Verdicts
 from cellcolor.frontend.setup import Continuity
 
 pytestmark = pytest.mark.second

@@ -13,7 +13,7 @@ from cellcolor.arrays import Array
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import link
 from cellcolor.frontend.reach.smooth import Measure, Motions, Probe, follow_edges
-from cellcolor.frontend.reach.validity import Verdicts
+from cellcolor.frontend.reach.validity_tests import Verdicts
 from cellcolor.frontend.setup import Continuity
 
 POLICY = Continuity(

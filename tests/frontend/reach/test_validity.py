@@ -15,7 +15,7 @@ from world import World
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
-from cellcolor.frontend.reach.validity import turned_into_limits
+from cellcolor.frontend.reach.validity_tests import turned_into_limits
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Setup
 
