@@ -8,7 +8,6 @@ cells where a region holds both. (Files call this kind of bound ``strangers``.)
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import ceil
