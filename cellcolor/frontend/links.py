@@ -39,9 +39,8 @@ def at_domain_border(edges: Index, valid: Mask) -> Mask:
     """
     i, j = edges.T
     beside = np.zeros_like(valid)
-    for here, there in ((i, j), (j, i)):
-        rows, branches = np.nonzero(~valid[there])
-        beside[here[rows], branches] = True
+    np.logical_or.at(beside, i, ~valid[j])
+    np.logical_or.at(beside, j, ~valid[i])
     border: Mask = beside[i] | beside[j]
     return border
 
@@ -125,13 +124,12 @@ def link(
 ) -> Mask:
     """Whether the two configurations of a branch on an edge's ends are continuous, (k, branches).
 
-    False where one of the ends has no valid configuration of that branch. Otherwise the branch
-    is followed along the edge, see :mod:`cellcolor.frontend.reach.smooth`, and the motion has to fit
-    into the joint limits.
+    False where one of the ends has no valid configuration of that branch. Otherwise the branch is
+    followed along the edge, see :mod:`cellcolor.frontend.reach.smooth`.
 
     Args:
         edges: (k, 2) vertex indices.
-        limits: lower and upper (joints,), in rad or m; None for none.
+        limits: lower and upper (joints,) in rad or m, which the motion has to keep.
         probe: see :data:`~cellcolor.frontend.reach.smooth.Probe`; called with points in between.
     """
     i, j = edges.T
