@@ -30,7 +30,6 @@ def paint(
     source: Solvable,
     solution: Solution | Result | str | PathLike[str],
     *,
-    tool_radius_m: float | None = None,
     time_limit: TimeLimit = None,
 ) -> Painted:
     """Paint every vertex of a surface in the colors of a solution (docs/motion.md).
@@ -39,8 +38,6 @@ def paint(
         source: what was solved: a labelled surface, a scene, or an instance that names its
             surface; its file, its shipped name, the value.
         solution: its solution, or the file of one.
-        tool_radius_m: of the tool's footprint: for a better posture a border bends about as sharply
-            as its rim; None for that of the scene's setup, or else for one mean mesh edge.
         time_limit: seconds, None for no limit.
 
     Returns:
@@ -51,8 +48,7 @@ def paint(
         (:mod:`cellcolor.motion.scene_painting`).
 
     Raises:
-        InputError: one of the two cannot be used, they do not belong together, or the radius is not
-            positive.
+        InputError: one of the two cannot be used, or they do not belong together.
         OutOfTime: the time limit came first.
         TooLarge: the refined mesh would not fit into memory.
     """
@@ -65,17 +61,10 @@ def paint(
         raise InputError(None, None, f"the solution is not valid: {problems[0]}")
     if subject.built is None:
         drawn = paint_solution(surface, decomposition, solution, deadline)
-        return move_borders(drawn, tool_radius_m, deadline=deadline)
-
+        return move_borders(drawn, deadline=deadline)
     from cellcolor.motion.scene_painting import paint_scene
 
-    return paint_scene(
-        subject.built,
-        decomposition,
-        solution,
-        tool_radius_m=tool_radius_m,
-        deadline=deadline,
-    ).painted
+    return paint_scene(subject.built, decomposition, solution, deadline=deadline).painted
 
 
 def cover(
