@@ -1,8 +1,8 @@
 """Programs and functions in processes of their own, which can be ended at any moment.
 
 :class:`Child` reads what a program prints until a deadline; :func:`run_alone` calls a function
-within limits of time and memory. Limits hold whatever the work does: the process is looked at from
-outside, and killed with its children.
+within limits of time and memory, :func:`as_they_end` several, some at a time. Limits hold whatever
+the work does: the process is looked at from outside, and killed with its children.
 
 No library does this. The pools of concurrent.futures and pebble kill a worker, not its children,
 and psutil does not find what dead children have left behind, which is in the session.
@@ -17,16 +17,20 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from textwrap import shorten
-from threading import TIMEOUT_MAX, Timer
-from typing import IO, Any, Literal
+from threading import TIMEOUT_MAX, Event, Timer
+from typing import IO, Any, Literal, TypeVar
 
 from cellcolor.deadline import Deadline
 from cellcolor.errors import CellcolorError
+
+_Name = TypeVar("_Name")
 
 
 class Child:
@@ -207,6 +211,43 @@ def run_alone(
         if end is None:
             error = _complaint(process.returncode, _last_line(errors))
         return Ended(end or "crashed", None, shorten(error, _SHOWN), *cost, peak)
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One piece of work; see :func:`run_alone`."""
+
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...]
+    most_seconds: float
+    most_mb: float = MOST_MB
+
+
+def as_they_end(slots: int, tasks: Iterable[tuple[_Name, Task]]) -> Iterator[tuple[_Name, Ended]]:
+    """What came of each task, by its name of any kind, in the order in which they end.
+
+    A task is taken only when there is a process for it, so that making the next one, which may take
+    a while, does not disturb the work where there is one. Whoever leaves the loop early, such as by
+    Ctrl-C, ends the work.
+
+    Args:
+        slots: how many are done at a time.
+    """
+    left, stop = iter(tasks), Event()
+    names: dict[Future[Ended], _Name] = {}
+    watchers = ThreadPoolExecutor(slots)
+    try:
+        while True:
+            for name, task in islice(left, slots - len(names)):
+                work = task.function, task.arguments, task.most_seconds, task.most_mb
+                names[watchers.submit(run_alone, *work, stop.is_set)] = name
+            if not names:
+                return
+            for future in wait(names, return_when=FIRST_COMPLETED).done:
+                yield names.pop(future), future.result()
+    finally:
+        stop.set()
+        watchers.shutdown(cancel_futures=True)
 
 
 def _result(file: Path) -> tuple[End, Any, str, float]:

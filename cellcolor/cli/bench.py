@@ -96,7 +96,6 @@ def run(
     from cellcolor.lab.runs.summary import summary_of_runs
     from cellcolor.lab.runs.sweep import Sweep, taking_turns
     from cellcolor.lab.runs.table import continued, disagreements
-    from cellcolor.lab.workers import Workers
 
     groups = [list(taking_turns(_groups(text, seeds))) for text in subjects]
     contestants = list(_contestants(solvers))
@@ -121,8 +120,8 @@ def run(
             **wanted,
         )
         try:
-            with Workers(jobs) as workers, line_of(Path("bench"), "solving") as show:
-                for row in sweep.run(workers):
+            with line_of(Path("bench"), "solving") as show:
+                for row in sweep.run(jobs):
                     table.append(row)
                     done = len(table.rows) - before + sweep.skipped
                     show(f"{done} of {sweep.runs}, {row.subject}: {row.contestant}")

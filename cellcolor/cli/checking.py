@@ -228,10 +228,8 @@ def _check_plan(request: Request, claim: Path) -> Exit:
         is_folder_or_nothing(request.cache)
 
     from cellcolor.door.oracle import Oracle
-    from cellcolor.oracle.ranges import ProofCache
 
-    cache = None if request.cache is None else ProofCache(request.cache, request.seconds)
-    oracle = Oracle(subject, time_limit=request.seconds, cache=cache)
+    oracle = Oracle(subject, time_limit=request.seconds, cache=request.cache)
     found = oracle.judge(claim, deadline=request.deadline)
     code = _told(request, found, _described(request.claim, found).to_document(), say_plan)
     if code is Exit.INVALID or not request.require_optimal or found.optimal:

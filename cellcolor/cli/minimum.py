@@ -117,7 +117,7 @@ def solve(files: tuple[Path, ...], every: bool, limit: int | None, **given: Any)
     """Find the fewest segments of instances, labelled surfaces and scenes.
 
     FILE may be the name of a shipped one, such as wok: a file of that name goes first. That holds
-    for the other commands as well; cellcolor.library() lists the names in Python.
+    for the other commands as well; the command library lists the names.
     """
     first = Deadline.of(given["seconds"])
     if limit is not None and not every:

@@ -27,7 +27,6 @@ from cellcolor.files.writing import Output, check_output, kind_of_format, write
 
 if TYPE_CHECKING:
     from cellcolor.data.instance import Instance
-    from cellcolor.data.library_index import LibraryEntry
     from cellcolor.data.solution import Solution
     from cellcolor.solvers.portable import OutsideAnswer
 
@@ -157,44 +156,23 @@ def import_(source: Path, output: Path, corrections: tuple[str, ...]) -> Exit:
 
 
 @cellcolor.command()
-@json_option("Print JSON Lines, one entry of the index per line.")
+@json_option("Print JSON Lines, an entry of the library's index on each, with all that is known.")
 def library(as_json: bool) -> Exit:
-    """List the graphs of the instance library, with what is known of their minima.
+    """List the names that can replace a file: scenes, robots, and the graphs of the library.
 
-    Commands take them by name, and check takes the stored solution of one as NAME.solution.json.
+    Of graphs the line says what is known of the minimum in search space paper. The command check
+    takes the stored solution of a graph as NAME.solution.json.
     """
     from dataclasses import asdict
 
-    from cellcolor.cli.tables import console, table_of
     from cellcolor.door.installed import library as shipped
 
-    entries = shipped().index.entries
     if as_json:
-        for entry in entries:
+        for entry in shipped().index.entries:
             print_json(asdict(entry))
-        return Exit.DONE
-    numbers = ("cells", "darts", "loops", "colors", "holes", "paper", "any division", "verified")
-    columns = {"name": "fold", "family": "fold"} | dict.fromkeys(numbers, "right")
-    console().print(table_of(columns, map(_row, entries)))
-    console().print(
-        f"{count(len(entries), 'graph')}. darts, loops: live ones of the cell that has most; "
-        "paper, any division: where the fewest\nsegments lie; verified: the lower bound for any "
-        "division has a certificate of that kind, which needs no solver"
-    )
+    else:
+        say_lines(shipped())
     return Exit.DONE
-
-
-def _row(entry: LibraryEntry) -> list[str]:
-    numbers = (entry.cells, entry.darts, entry.loops, entry.colors, entry.holes)
-    lower = entry.surface.lower
-    return [
-        entry.name,
-        entry.family,
-        *map(str, numbers),
-        str(entry.paper),
-        str(entry.surface),
-        lower.kind if lower.verified else "",
-    ]
 
 
 @cellcolor.command(of=("door.reading:label",))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Mapping, Sequence
 
 from rich import box
 from rich.console import Console
@@ -28,33 +27,15 @@ _SEGMENTS_SHOWN = 200
 _PLAIN_WIDTH = 200
 
 
-def console() -> Console:
-    """Standard output; wide where it is no terminal, so that no cell of a table is broken."""
-    return Console(
-        width=None if sys.stdout.isatty() else _PLAIN_WIDTH, highlight=False, markup=False
-    )
-
-
-def table_of(columns: Mapping[str, str], rows: Iterable[Sequence[str]]) -> Table:
-    """A table, its columns by their titles: ``left``, ``right``, or ``fold`` with line breaks."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for title, side in columns.items():
-        if side == "fold":
-            table.add_column(title, overflow="fold")
-        else:
-            table.add_column(title, justify="right" if side == "right" else "left")
-    for row in rows:
-        table.add_row(*row)
-    return table
-
-
 def print_solution(instance: Instance, solution: Solution) -> None:
     """One solution: its segments, then what is known about their number.
 
     Args:
         solution: a valid solution of it.
     """
-    out = console()
+    # Wide where it is no terminal, so that no cell of the table is broken.
+    width = None if sys.stdout.isatty() else _PLAIN_WIDTH
+    out = Console(width=width, highlight=False, markup=False)
     out.print(Text(shown(instance.name), style="bold"), instance.size)
     if solution.cells:
         shares = shares_of(instance, solution)
@@ -87,8 +68,14 @@ def _segments(instance: Instance, solution: Solution, shares: Shares) -> Table:
         rows.append(("", UNREACHABLE, "", percent(shares.unreachable, shares.unreachable)))
         if shares.given_up:
             rows.append(("", GIVEN_UP, "", percent(shares.given_up, shares.given_up)))
-    columns = {"segment": "right", "color": "left", "cells": "fold", BASES[shares.of]: "right"}
-    return table_of(columns, rows)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("segment", justify="right")
+    table.add_column("color")
+    table.add_column("cells", overflow="fold")
+    table.add_column(BASES[shares.of], justify="right")
+    for row in rows:
+        table.add_row(*row)
+    return table
 
 
 def nothing_to_cover(instance: Instance) -> str:

@@ -7,13 +7,11 @@ from __future__ import annotations
 
 import csv
 import zipfile
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import parse_json, read_text
@@ -22,30 +20,9 @@ MEMBERS = ("vertices", "faces", "configurations", "offsets", "names", "limits", 
 """What an archive or a JSON object may have; ``offsets`` only an archive."""
 
 
-@dataclass(frozen=True, slots=True)
-class JointSolutions:
-    """What a file says, as arguments of
-    :func:`~cellcolor.configurations.labelling.from_configurations`.
-
-    Attributes:
-        vertices: (n, 3) in m; None where the file has no mesh.
-        faces: (m, 3); None where the file has no mesh.
-        configurations: by vertex, each (k, joints).
-        names: by vertex, the name of each configuration; None without names.
-        limits: (2, joints); None without limits.
-        periods: of each joint, or of all; None: full circles.
-    """
-
-    vertices: ArrayLike | None
-    faces: ArrayLike | None
-    configurations: Sequence[ArrayLike]
-    names: Sequence[Sequence[str]] | None = None
-    limits: ArrayLike | None = None
-    periods: ArrayLike | None = None
-
-
-def read_joint_solutions(path: Path, vertices: int | None = None) -> JointSolutions:
-    """Read a file of joint solutions.
+def read_joint_solutions(path: Path, vertices: int | None = None) -> dict[str, Any]:
+    """Read a file of joint solutions, as arguments of
+    :func:`~cellcolor.configurations.labelling.from_configurations`; without a mesh for ``.csv``.
 
     Args:
         path: ``.npz`` with ``configurations`` of all vertices in one array (k, joints) and
@@ -69,7 +46,7 @@ def read_joint_solutions(path: Path, vertices: int | None = None) -> JointSoluti
         raise InputError(None, None, "must end in .npz, .json or .csv")
 
 
-def _from_archive(path: Path) -> JointSolutions:
+def _from_archive(path: Path) -> dict[str, Any]:
     try:
         with np.load(path, allow_pickle=False) as archive:
             members: dict[str, Any] = {name: archive[name] for name in archive.files}
@@ -100,17 +77,17 @@ def _from_archive(path: Path) -> JointSolutions:
             message = f"has {len(own)} entries for {len(flat)} configurations"
             raise InputError(None, "names", message)
         members["names"] = [own[first:end] for first, end in spans]
-    return JointSolutions(**members)
+    return members
 
 
-def _from_members(members: dict[str, Any]) -> JointSolutions:
+def _from_members(members: dict[str, Any]) -> dict[str, Any]:
     _check_members(members)
     if "offsets" in members:
         raise InputError(None, "offsets", "is of archives only; give a list for each vertex")
     for name in ("vertices", "faces", "configurations"):
         if not isinstance(members[name], list):
             raise InputError(None, name, "must be a list")
-    return JointSolutions(**members)
+    return {name: value for name, value in members.items() if value is not None}
 
 
 def _check_members(members: Mapping[str, Any]) -> None:
@@ -122,7 +99,7 @@ def _check_members(members: Mapping[str, Any]) -> None:
             raise InputError(None, name, f"is unknown; known are {', '.join(MEMBERS)}")
 
 
-def _from_rows(path: Path, vertices: int) -> JointSolutions:
+def _from_rows(path: Path, vertices: int) -> dict[str, Any]:
     configurations: list[list[list[float]]] = [[] for _ in range(vertices)]
     names: list[list[str]] = [[] for _ in range(vertices)]
     rows = csv.reader(read_text(path).splitlines())
@@ -147,4 +124,4 @@ def _from_rows(path: Path, vertices: int) -> JointSolutions:
             raise InputError(None, f"line {line}", message)
         configurations[vertex].append(angles)
         names[vertex].append(row[-1].strip() if named else "")
-    return JointSolutions(None, None, configurations, names if named else None)
+    return {"configurations": configurations} | ({"names": names} if named else {})

@@ -1,4 +1,4 @@
-"""Lower bounds of the number of segments: their kinds, and what their certificates hold and show.
+"""Lower bounds of the number of segments: their kinds, and what their certificates hold.
 
 The solvers find bounds and the checker verifies them; neither is in here, so that they share the
 data and nothing else.
@@ -6,16 +6,14 @@ data and nothing else.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from pydantic import NonNegativeInt
 
-from cellcolor.data.instance import Instance
 from cellcolor.data.value import Value
-from cellcolor.data.wording import count, listed
+from cellcolor.data.wording import count
 from cellcolor.files.validation import json_content, settle
 
 Extent = Literal["surface", "strands"]
@@ -62,64 +60,10 @@ EVERY_CELL = "It holds for the number of segments, where every cell has to be co
 """The objective of most kinds of bounds."""
 
 
-@dataclass(frozen=True, slots=True)
-class Mark:
-    """Cells to be marked on the surface.
-
-    Attributes:
-        label: what is written on them.
-        text: what they are.
-        cells: the cells.
-        colors: those that they can be covered in, as far as that matters.
-    """
-
-    label: str
-    text: str
-    cells: Collection[int]
-    colors: Collection[int]
-
-
-@dataclass(frozen=True, slots=True)
-class Connection:
-    """A way from one area to another in one color, to be drawn on the surface."""
-
-    text: str
-    color: int
-    near: Collection[int]
-    far: Collection[int]
-
-
-@dataclass(frozen=True, slots=True)
-class Shown:
-    """What is to be seen of a certificate, before anything draws it.
-
-    Attributes:
-        marks: of a cell in several of them the last is to be seen.
-        connections: where two of them cross is marked as well.
-        notes: lines under the legend.
-    """
-
-    marks: tuple[Mark, ...]
-    connections: tuple[Connection, ...]
-    notes: tuple[str, ...]
-
-
-class Certificate(Value, ABC):
+class Certificate(Value):
     """What proves a bound. A subclass is a frozen dataclass with the members of the JSON object."""
 
     __slots__ = ()
-
-    @abstractmethod
-    def shown(self, value: int, instance: Instance) -> Shown:
-        """What is to be seen of it.
-
-        Args:
-            value: the bound's.
-        """
-
-    def witness(self, value: int) -> tuple[int, ...]:  # noqa: ARG002
-        """As many cells as the bound says, no two of which can share a segment; or none."""
-        return ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,41 +89,14 @@ class BoundKind:
         return because + self.objective
 
 
-def marks_of(instance: Instance, cells: Sequence[int]) -> tuple[Mark, ...]:
-    """Cells, each by itself, with their colors."""
-    return tuple(
-        Mark(
-            str(cell),
-            f"cell {cell}: {listed(instance.colors[c] for c in instance.cells[cell].colors)}",
-            (cell,),
-            instance.cells[cell].colors,
-        )
-        for cell in cells
-    )
-
-
 @dataclass(frozen=True, slots=True)
 class CertifiedCells(Certificate):
-    """Cells that fewer color regions than the bound says do not touch."""
+    """Cells that fewer color regions than the bound says do not touch.
+
+    If there are as many as it says, no color region touches two of them.
+    """
 
     cells: tuple[int, ...]
-
-    def shown(self, value: int, instance: Instance) -> Shown:
-        """The cells."""
-        cells = sorted(set(self.cells))
-        notes: tuple[str, ...] = (
-            f"No {count(value - 1, 'color region')} touch all of these cells.",
-        )
-        if len(cells) == value:
-            notes = (
-                "No two of these cells can share a segment:",
-                "no color leads from one to another.",
-            )
-        return Shown(marks_of(instance, cells), (), notes)
-
-    def witness(self, value: int) -> tuple[int, ...]:
-        """The cells if there are as many: then no color region touches two of them."""
-        return self.cells if len(self.cells) == value else ()
 
 
 STRANGERS = BoundKind(
@@ -240,36 +157,6 @@ class CertifiedParts(Certificate):
 
     left_out: tuple[tuple[int, int, int], ...] = ()
     parts: tuple[CertifiedPart, ...]
-
-    def shown(self, value: int, instance: Instance) -> Shown:
-        """One conflict if there is any, or else the cells."""
-        conflicts = [conflict for part in self.parts for conflict in part.conflicts]
-        if conflicts:
-            return _conflict_shown(conflicts, instance)
-        cells = tuple(cell for part in self.parts for cell in part.cells)
-        return CertifiedCells(cells).shown(value, instance)
-
-
-def _conflict_shown(conflicts: Sequence[CertifiedCrossing], instance: Instance) -> Shown:
-    """The four areas of one conflict, and two connections, which would cross."""
-    first = conflicts[0]
-    marks, connections = [], []
-    for group, (letter, areas) in enumerate(zip("ab", (first.one, first.other), strict=True)):
-        color = first.colors[group]
-        name = instance.colors[color]
-        for place, area in enumerate(areas, start=1):
-            which = f"{'cell' if len(area) == 1 else 'cells'} {listed(area)}"
-            text = f"{letter}{place}: {which}, to be connected in {name}"
-            marks.append(Mark(f"{letter}{place}", text, area, (color,)))
-        text = f"a connection of {letter}1 and {letter}2 in {name}"
-        connections.append(Connection(text, color, *areas))
-    notes = [
-        "A segment that touches a1 and a2 and one that touches b1",
-        "and b2 would cross, wherever they run. Two are drawn.",
-    ]
-    if len(conflicts) > 1:
-        notes.append(f"The certificate names {count(len(conflicts) - 1, 'conflict')} more.")
-    return Shown(tuple(marks), tuple(connections), tuple(notes))
 
 
 CONFLICTS = BoundKind(

@@ -12,7 +12,14 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveInt
 
-from cellcolor.data.bounds import COMPLETE_MODEL, Bound, Extent, certificate_of, kind_of
+from cellcolor.data.bounds import (
+    COMPLETE_MODEL,
+    Bound,
+    CertifiedCells,
+    Extent,
+    certificate_of,
+    kind_of,
+)
 from cellcolor.data.cells_and_edges import DartName, twin
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance
@@ -234,8 +241,8 @@ class Solution(Document):
             for bound in self.bounds or ():
                 with suppress(InputError):  # a certificate that says nothing
                     certificate = certificate_of(bound) if bound.value == wanted else None
-                    if certificate is not None and (cells := certificate.witness(wanted)):
-                        return cells
+                    if isinstance(certificate, CertifiedCells) and len(certificate.cells) == wanted:
+                        return certificate.cells
         return ()
 
     def why_not_fewer(self, instance: Instance | None = None) -> str | None:

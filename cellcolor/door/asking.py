@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Unpack
@@ -15,7 +14,7 @@ from cellcolor.door.installed import extras_for
 from cellcolor.door.subject import Solvable, open_subject, scene_of
 from cellcolor.errors import CellcolorError, InputError
 from cellcolor.files.writing import Output, path_of, write
-from cellcolor.lab.workers import Task, Workers, as_they_end
+from cellcolor.processes import Task, as_they_end
 from cellcolor.questions.answers import Front
 from cellcolor.questions.placements import PlacedMinimum, PlacementQuestion, Placements, Pose
 from cellcolor.questions.places import Place
@@ -116,16 +115,12 @@ def place(
         raise InputError(None, "jobs", f"must be 1 or more, is {jobs}")
     from cellcolor.questions.searching_places import search_places
 
-    workers: AbstractContextManager[Workers | None] = nullcontext()
-    if jobs > 1:
-        workers = Workers(jobs)
-    with workers as others:
-        minima = partial(_minima, others, asked, deadline)
-        return search_places(own, asked, minima, deadline, report)
+    minima = partial(_minima, jobs, asked, deadline)
+    return search_places(own, asked, minima, deadline, report)
 
 
 def _minima(
-    workers: Workers | None,
+    jobs: int,
     question: PlacementQuestion,
     deadline: Deadline,
     scene: Scene,
@@ -135,7 +130,7 @@ def _minima(
     """The minima of placements in the order in which they are done, some at a time.
 
     Args:
-        workers: the processes that compute; None for this one, which does a single one as well.
+        jobs: processes at a time; this one does what there is one of.
         cover: as of :data:`~cellcolor.questions.searching_places.Minima`.
 
     Raises:
@@ -144,9 +139,9 @@ def _minima(
     from cellcolor.questions.placing import minima_at
 
     how = 1, question.seed, question.base, cover
-    size = min(_BATCH, -(-len(poses) // (1 if workers is None else workers.slots)) or 1)
+    size = min(_BATCH, -(-len(poses) // jobs) or 1)
     lost = [poses[at : at + size] for at in range(0, len(poses), size)]
-    if workers is None or len(poses) == 1:
+    if 1 in (jobs, len(poses)):
         for part in lost:
             yield minima_at(scene, part, deadline.left, *how)
         return
@@ -155,7 +150,7 @@ def _minima(
         most = min(left, _ALL_DAY) + _ENDING
         tasks = [(part, Task(minima_at, (scene, part, left, *how), most)) for part in lost]
         lost = []
-        for part, ended in as_they_end(workers, tasks):
+        for part, ended in as_they_end(jobs, tasks):
             if ended.end in ("done", "timeout", "stopped"):
                 yield ended.value or []
             elif ended.end == "failed" or attempt == _ATTEMPTS:

@@ -183,7 +183,7 @@ def draw(picture: Picture, subject: Subject, options: Mapping[str, Any]) -> Draw
     Raises:
         InputError: an input is missing, or the inputs cannot be drawn together.
     """
-    given = dict.fromkeys(_OPTIONS) | dict(options)
+    given: dict[str, Any] = {**dict.fromkeys(_OPTIONS), **options}
     file = None if subject.path is None else str(subject.path)
 
     def vertex(asked: object, field: str) -> int:

@@ -25,6 +25,7 @@ from cellcolor.door.joint_plans import AnyPath, colors_of_joints, path_verdict
 from cellcolor.door.reading import color_numbers, read_claim
 from cellcolor.door.subject import Result, Solvable, open_subject
 from cellcolor.errors import BeatenBound, InputError, TooLarge, naming
+from cellcolor.files.writing import path_of
 from cellcolor.oracle import BetterPainting, PathVerdict, Proof, ProvenRange, Verdict, prove
 from cellcolor.oracle.improvement import better_painting, improvement_of
 from cellcolor.oracle.ranges import ProofCache
@@ -66,7 +67,7 @@ class Oracle:
         *,
         strands: int | None = None,
         bounds: ProvenRange | None = None,
-        cache: ProofCache | None = None,
+        cache: str | PathLike[str] | None = None,
         **search: Unpack[Search],
     ) -> None:
         """Open the surface; nothing is proved yet.
@@ -77,7 +78,7 @@ class Oracle:
             strands: corridors that may cross one topological edge, None for the usual number.
             bounds: this surface's proven range, if it is known already: then nothing is proved,
                 and no better plan is looked for.
-            cache: where the proof is kept for later processes, and looked for first.
+            cache: a folder where the proof is kept for later processes, and looked for first.
             **search: :class:`~cellcolor.door.asked.Search`: of the proof. The time limit, 60 s if
                 it is left out, is one for building a scene as well.
 
@@ -88,7 +89,7 @@ class Oracle:
         if bounds is not None and not isinstance(bounds, ProvenRange):
             message = f"must be what cellcolor.proven_range returns, is {bounds!r:.100}"
             raise InputError(None, "bounds", message)
-        self._time_limit = search.get("time_limit", SECONDS)
+        limit = self._time_limit = search.get("time_limit", SECONDS)
         options = options_of(search, Search)
         self._subject = open_subject(source, Deadline.of(self._time_limit))
         self._options: dict[str, Any] = {
@@ -96,7 +97,10 @@ class Oracle:
             "workers": options.workers,
             "seed": options.seed,
         }
-        self._cache = cache
+        self._cache: ProofCache | None = None
+        if cache is not None:
+            seconds = float(limit) if isinstance(limit, (int, float)) else Deadline.of(limit).left
+            self._cache = ProofCache(path_of(cache), seconds)
         self._known = bounds
         self._proof = None if bounds is None else Proof(bounds)
         self._best: BetterPainting | None = None
@@ -210,9 +214,9 @@ class Oracle:
         """The proof about the surface, made once, with what is proved by the deadline."""
         if self._proof is None:
             kept = None if self._cache is None else self._cache.get(self.surface, deadline)
-            self._proof = kept
             if kept is None or kept.kept_lower is not None:
-                self._proof = self._proved(kept, deadline)
+                kept = self._proved(kept, deadline)
+            self._proof = kept
         return self._proof
 
     def _proved(self, kept: Proof | None, deadline: Deadline) -> Proof:

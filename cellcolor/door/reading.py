@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Sequence
-from math import pi
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -149,25 +148,13 @@ def label(
         OutOfTime: the deadline came first.
     """
     path = path_of(source)
-    own = None
+    own: dict[str, Any] = {}
     if mesh is not None:
         from cellcolor.frontend.parts.mesh_file import read_mesh
 
-        own = read_mesh(path_of(mesh), deadline)
-    found = read_joint_solutions(path, None if own is None else len(own[0]))
-    vertices, faces = (found.vertices, found.faces) if own is None else own
+        own["vertices"], own["faces"] = read_mesh(path_of(mesh), deadline)
+    found = read_joint_solutions(path, len(own["vertices"]) if own else None) | own
     with naming(path):
-        assert vertices is not None  # only a CSV file has no mesh, and it was read with one
-        assert faces is not None
         return from_configurations(
-            vertices,
-            faces,
-            found.configurations,
-            names=found.names,
-            limits=found.limits,
-            periods=2 * pi if found.periods is None else found.periods,
-            conflicts=conflicts,
-            reach_m=reach_m,
-            name=path.stem,
-            deadline=deadline,
+            **found, conflicts=conflicts, reach_m=reach_m, name=path.stem, deadline=deadline
         )

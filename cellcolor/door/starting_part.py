@@ -44,12 +44,13 @@ def part_keys_of(
     Raises:
         InputError: the mesh cannot be used, not even repaired, or has no such side.
     """
-    from cellcolor.frontend.parts.mesh_file import UNITS, load_mesh
+    from cellcolor.frontend.parts.mesh_file import UNITS, MeshObject
 
     if looked.refusal_after_repair is not None:
         raise InputError(str(mesh), None, looked.refusal_after_repair)
     unit = UNITS[looked.unit]
-    surface = load_mesh(mesh, unit, mend=bool(looked.repairs))
+    part = MeshObject(file=str(mesh), meters_per_unit=unit, repair=bool(looked.repairs))
+    surface = part.surface()
     side, note = _side_of(surface.mesh, flip, cover)
     # Halved edges are 0.7 of the longest in the mean, and there are two triangles a vertex.
     edge = math.ceil(1e3 * math.sqrt(surface.mesh.areas.sum() / (0.42 * VERTICES))) / 1e3

@@ -6,7 +6,7 @@ The part is kept in its own frame as well. So the same part can be tested in ano
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 from os import PathLike
 from typing import Any
@@ -17,7 +17,6 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.arm.notes import notes_on_shapes, too_large
-from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, always_touching, pairs_of
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_units
@@ -143,7 +142,7 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
         notes += note_on_crossings(covered.mesh) + note_on_shell(covered)
         notes += note_on_triangles(surface, setup.task.rounding_m)
     if setup.constraints.collision:
-        notes += _notes_on_contacts(prepared, float(lengths.max()))
+        notes += tuple(_notes_on_contacts(prepared, float(lengths.max())))
     return named(replace(prepared, notes=notes), deadline)
 
 
@@ -191,43 +190,32 @@ def _prepared_on(scene: Scene, surface: Surface) -> PreparedScene:
     return replace(prepare(scene), surface=surface)
 
 
-def _notes_on_contacts(place: PreparedScene, longest: float) -> tuple[str, ...]:
+def _notes_on_contacts(place: PreparedScene, longest: float) -> Iterator[str]:
     """Likely mistakes in the collision shapes; ``longest`` edge of the mesh in m."""
-    robot, found = place.robot, []
-    margin = place.setup.margins.between_links_m
-    coarse = _too_coarse(robot, place.obstacles, longest)
-    if coarse is not None:
-        found.append(coarse)
-    if robot.has_solids:
-        if not place.tip.body.length:
-            found.append(
-                "a collision shape of the last link or the tool reaches as far as the tool's tip, "
-                "so it touches the object wherever the tip does"
-            )
-        found += [
-            f"{first!r} and {second!r} overlap in all of 100 configurations, so none will be "
-            "valid: are their shapes too large (robot.mesh_collision_of), or may they touch "
-            "(robot.may_touch)?"
-            for first, second in always_touching(robot, pairs_of(robot, margin))
-        ]
-    return tuple(found)
-
-
-def _too_coarse(robot: Robot, obstacles: tuple[Shape, ...], longest: float) -> str | None:
-    """A warning where the longest mesh edge (m) is longer than the tool or an obstacle is wide.
-
-    A vertex says nothing of what is far from it.
-    """
+    robot = place.robot
     widths = [
         (2 * body.radius, f"the body of {body.link!r}")
         for body in robot.bodies
         if body.joint == robot.joints
     ]
-    widths += [(solid.width, f"obstacle[{k}]") for k, solid in enumerate(obstacles)]
+    widths += [(solid.width, f"obstacle[{k}]") for k, solid in enumerate(place.obstacles)]
     width, name = min(widths, default=(longest, ""))
-    if longest <= width:
-        return None
-    return (
-        f"the object's edges are up to {longest:.3g} m long and {name} is {width:.3g} m wide: "
-        "between vertices something can stand unnoticed (max_edge_m, target_vertices)"
-    )
+    if longest > width:  # a vertex says nothing of what is far from it
+        yield (
+            f"the object's edges are up to {longest:.3g} m long and {name} is {width:.3g} m wide: "
+            "between vertices something can stand unnoticed (max_edge_m, target_vertices)"
+        )
+    if not robot.has_solids:
+        return
+    if not place.tip.body.length:
+        yield (
+            "a collision shape of the last link or the tool reaches as far as the tool's tip, so "
+            "it touches the object wherever the tip does"
+        )
+    pairs = pairs_of(robot, place.setup.margins.between_links_m)
+    for first, second in always_touching(robot, pairs):
+        yield (
+            f"{first!r} and {second!r} overlap in all of 100 configurations, so none will be "
+            "valid: are their shapes too large (robot.mesh_collision_of), or may they touch "
+            "(robot.may_touch)?"
+        )

@@ -17,8 +17,6 @@ from typing import Any
 
 import numpy as np
 
-from cellcolor.arrays import Mask
-from cellcolor.deadline import Deadline
 from cellcolor.frontend.build import BuildResult, StageClock, colored
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.links import continuous_along, valid_along
@@ -293,24 +291,19 @@ def built_asking_less(
     deadline, edges = clock.deadline, prepared.surface.mesh.edges
     codes = [prepared.judge.reason_names.index(reason) for reason in reasons]
     clock.begin("validity at the vertices")
-    verdicts = _judged_there(prepared, before, np.isin(before.reasons, codes), deadline)
+    known, refused = before.verdicts, np.isin(before.reasons, codes)
+    found = prepared.judge(known.configurations[refused], deadline)
+    configurations, reasons = known.configurations.copy(), known.reasons.copy()
+    determinants, tracked = known.determinants.copy(), known.tracked.copy()
+    configurations[refused], reasons[refused] = found.configurations, found.reasons
+    determinants[refused], tracked[:, refused] = found.determinants, found.tracked
+    verdicts = Verdicts(configurations, reasons, determinants, tracked, known.reason_names)
     clock.begin("continuity")
     continuous = before.continuous.copy()
     rows = np.flatnonzero((verdicts.valid[edges].all(axis=1) & ~continuous).any(axis=1))
     continuous[rows] |= continuous_along(prepared, edges[rows], verdicts, deadline)
     clock.begin("validity between vertices")
-    known = before.all_colors.linked, before.verdicts.valid
-    linked = valid_along(prepared, verdicts, continuous, deadline, known)
+    linked = valid_along(
+        prepared, verdicts, continuous, deadline, (before.all_colors.linked, known.valid)
+    )
     return colored(prepared, verdicts, continuous, linked, clock)
-
-
-def _judged_there(
-    prepared: PreparedScene, before: BuildResult, where: Mask, deadline: Deadline
-) -> Verdicts:
-    """The verdicts on all candidates, those of some (n, branches) made anew."""
-    known, new = before.verdicts, prepared.judge(before.configurations[where], deadline)
-    configurations, reasons = known.configurations.copy(), known.reasons.copy()
-    determinants, tracked = known.determinants.copy(), known.tracked.copy()
-    configurations[where], reasons[where] = new.configurations, new.reasons
-    determinants[where], tracked[:, where] = new.determinants, new.tracked
-    return Verdicts(configurations, reasons, determinants, tracked, known.reason_names)

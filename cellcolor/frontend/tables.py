@@ -219,18 +219,18 @@ class Registry(Generic[T]):
         """
         self._group, self.base, self._own = group, base, own
 
-    def find(self, name: str) -> type[T]:
-        """The class of that name.
+    def find(self, name: str, field: str | None = None) -> type[T]:
+        """The class of that name, which a file has in a field.
 
         Raises:
             InputError: no class has this name, or two have it; it cannot be imported; or it is not
                 derived from the base class.
         """
-        point = find(name, self._own, self._group)
-        loaded = load(point)
+        point = find(name, self._own, self._group, field)
+        loaded = load(point, field)
         if not (isinstance(loaded, type) and issubclass(loaded, self.base)):
             message = f"{name!r} ({point.value}) is no {self.base.__name__}"
-            raise InputError(None, None, message)
+            raise InputError(None, field, message)
         return loaded
 
 

@@ -78,7 +78,7 @@ class TriangleMesh:
     @cached_property
     def pairs(self) -> tuple[Index, Index]:
         """The edges (p,) that two triangles have, and the two sides (p, 2) that are each."""
-        order, first = self._edges_and_sides[2], self._first_side
+        order, first = self._edges_and_sides[2], np.cumsum(self.triangles_at) - self.triangles_at
         two = np.flatnonzero(self.triangles_at == 2)
         return _fixed(two), _fixed(np.column_stack([order[first[two]], order[first[two] + 1]]))
 
@@ -94,10 +94,6 @@ class TriangleMesh:
     def beyond(self) -> Index:
         """(m, 3) the triangle beyond each side; -1 unless two have it."""
         return self.across // 3
-
-    @cached_property
-    def _first_side(self) -> Index:
-        return _fixed(np.cumsum(self.triangles_at) - self.triangles_at)
 
     @property
     def ascending(self) -> Mask:
@@ -245,7 +241,11 @@ def directed_edges(faces: NDArray[np.int64], vertex_count: int) -> dict[tuple[in
     """
     if len(faces) == 0:
         raise InputError(None, "faces", "the surface is empty")
-    _check_indices(faces, vertex_count)
+    check_corners(faces, vertex_count)
+    repeated = np.flatnonzero(repeated_corners(faces))
+    if len(repeated):
+        face = repeated[0]
+        raise InputError(None, f"faces[{face}]", f"repeats a vertex: {faces[face].tolist()}")
     # Three directed edges a face, and what stands on their left.
     start, end, third = faces.ravel(), faces[:, [1, 2, 0]].ravel(), faces[:, [2, 0, 1]].ravel()
     key = start * vertex_count + end
@@ -263,19 +263,23 @@ def directed_edges(faces: NDArray[np.int64], vertex_count: int) -> dict[tuple[in
     return dict(zip(pairs, third.tolist(), strict=True))
 
 
-def _check_indices(faces: NDArray[np.int64], vertex_count: int) -> None:
+def check_corners(faces: Index, vertex_count: int) -> None:
+    """Refuse a face that has a vertex which is not there.
+
+    Raises:
+        InputError: names the corner.
+    """
     wrong = np.argwhere((faces < 0) | (faces >= vertex_count))
     if len(wrong):
         face, corner = wrong[0]
-        raise InputError(
-            None, f"faces[{face}][{corner}]", f"there is no vertex {faces[face, corner]}"
-        )
-    repeated = np.flatnonzero(
-        (faces[:, 0] == faces[:, 1]) | (faces[:, 1] == faces[:, 2]) | (faces[:, 2] == faces[:, 0])
-    )
-    if len(repeated):
-        face = repeated[0]
-        raise InputError(None, f"faces[{face}]", f"repeats a vertex: {faces[face].tolist()}")
+        message = f"there is no vertex {faces[face, corner]}"
+        raise InputError(None, f"faces[{face}][{corner}]", message)
+
+
+def repeated_corners(faces: Index) -> Mask:
+    """The faces (m,) with a vertex that is two of their corners."""
+    a, b, c = faces.T
+    return np.asarray((a == b) | (b == c) | (c == a))
 
 
 def _refuse_edge(faces: Index, first: int, second: int) -> None:

@@ -1,11 +1,11 @@
 """Why fewer segments are not enough: what the certificate of a bound names, on the surface.
 
-What that is each kind of bound says (:mod:`cellcolor.data.bounds`): cells, and connections that
-cross each other.
+That is cells, each by itself, or a conflict: two pairs of areas whose connections cross each other.
 """
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from itertools import combinations
 from typing import Any
 
@@ -14,11 +14,11 @@ import numpy as np
 
 from cellcolor.arrays import Index, Mask
 from cellcolor.checker.certificates import BoundVerdict
-from cellcolor.data.bounds import Shown, certificate_of
+from cellcolor.data.bounds import CertifiedCells, CertifiedCrossing, CertifiedParts, certificate_of
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.data.wording import count
+from cellcolor.data.wording import count, listed
 from cellcolor.decomposition import Decomposition
 from cellcolor.errors import InputError
 from cellcolor.pictures.mesh_picture import SurfaceView, draw_surface
@@ -41,39 +41,97 @@ def draw_why(
     surface_bounds = [b for b in proved if b.holds_for == "surface"]
     bound = max(surface_bounds, key=lambda bound: bound.value, default=None)
     certificate = None if bound is None else certificate_of(bound)
-    if bound is None or certificate is None:
+    if bound is None or not isinstance(certificate, CertifiedCells | CertifiedParts):
         message = "none above 1 has a certificate, so there is nothing to see"
         raise InputError(None, "bounds", message)
     title = f"{surface.name}: why {count(bound.value, 'segment')} at least"
-    shown = certificate.shown(bound.value, decomposition.instance)
-    return draw_surface(surface, view_of(surface, decomposition, title, shown))
+    conflicts: list[CertifiedCrossing] = []
+    if isinstance(certificate, CertifiedParts):
+        conflicts = [conflict for part in certificate.parts for conflict in part.conflicts]
+        cells = {cell for part in certificate.parts for cell in part.cells}
+    else:
+        cells = set(certificate.cells)
+    if conflicts:
+        return draw_surface(surface, _conflict(surface, decomposition, title, conflicts))
+    notes: tuple[str, ...] = (
+        "No two of these cells can share a segment:",
+        "no color leads from one to another.",
+    )
+    if len(cells) != bound.value:
+        notes = (f"No {count(bound.value - 1, 'color region')} touch all of these cells.",)
+    return draw_surface(surface, view_of_cells(surface, decomposition, title, sorted(cells), notes))
 
 
-def view_of(
-    surface: LabelledSurface, decomposition: Decomposition, title: str, shown: Shown
+def view_of_cells(
+    surface: LabelledSurface,
+    decomposition: Decomposition,
+    title: str,
+    cells: Sequence[int],
+    notes: tuple[str, ...] = (),
 ) -> SurfaceView:
-    """The marked cells, the connections, and where these cross each other."""
+    """Cells, each by itself, with their colors."""
+    marks = []
+    for cell in cells:
+        colors = decomposition.instance.cells[cell].colors
+        name = f"cell {cell}: {listed(surface.colors[color] for color in colors)}"
+        marks.append((VertexClass(name, fill_of(surface, colors), str(cell)), (cell,)))
+    return _view(surface, decomposition, title, marks, [], notes)
+
+
+def _conflict(
+    surface: LabelledSurface,
+    decomposition: Decomposition,
+    title: str,
+    conflicts: Sequence[CertifiedCrossing],
+) -> SurfaceView:
+    """The four areas of one conflict, and two connections, which would cross."""
+    first, cells = conflicts[0], np.array(decomposition.vertex_cell)
+    marks, ways = [], []
+    for letter, color, areas in zip("ab", first.colors, (first.one, first.other), strict=True):
+        name, fill = surface.colors[color], fill_of(surface, [color])
+        for place, area in enumerate(areas, start=1):
+            which = f"{'cell' if len(area) == 1 else 'cells'} {listed(area)}"
+            text = f"{letter}{place}: {which}, to be connected in {name}"
+            marks.append((VertexClass(text, fill, f"{letter}{place}"), area))
+        text = f"a connection of {letter}1 and {letter}2 in {name}"
+        near, far = (np.isin(cells, area) for area in areas)
+        ways.append((VertexClass(text, fill), set(_way(surface, color, near, far))))
+    notes: tuple[str, ...] = (
+        "A segment that touches a1 and a2 and one that touches b1",
+        "and b2 would cross, wherever they run. Two are drawn.",
+    )
+    if len(conflicts) > 1:
+        notes += (f"The certificate names {count(len(conflicts) - 1, 'conflict')} more.",)
+    return _view(surface, decomposition, title, marks, ways, notes)
+
+
+def _view(
+    surface: LabelledSurface,
+    decomposition: Decomposition,
+    title: str,
+    marks: Sequence[tuple[VertexClass, Collection[int]]],
+    ways: Sequence[tuple[VertexClass, set[int]]],
+    notes: tuple[str, ...],
+) -> SurfaceView:
+    """Marked cells, connections by their vertices, and where these cross each other.
+
+    Of a cell with several marks the last one is to be seen.
+    """
     cells = np.array(decomposition.vertex_cell, dtype=np.int64)
-    marks, ways = shown.marks, shown.connections
     rest = len(marks) + len(ways) + (1 if ways else 0)
     labels: Index = np.where(cells == OUTSIDE, rest + 1, rest)
-    for number, mark in enumerate(marks):
-        labels[np.isin(cells, list(mark.cells))] = number
-    drawn = [
-        set(_way(surface, way.color, np.isin(cells, list(way.near)), np.isin(cells, list(way.far))))
-        for way in ways
-    ]
+    for number, (_, own) in enumerate(marks):
+        labels[np.isin(cells, list(own))] = number
     marked = labels < len(marks)
-    for number, path in enumerate(drawn):
-        labels[[vertex for vertex in path if not marked[vertex]]] = len(marks) + number
-    for one, other in combinations(drawn, 2):
+    for number, (_, path) in enumerate(ways, start=len(marks)):
+        labels[[vertex for vertex in path if not marked[vertex]]] = number
+    for (_, one), (_, other) in combinations(ways, 2):
         labels[list(one & other)] = rest - 1
-    classes = [VertexClass(m.text, fill_of(surface, m.colors), m.label) for m in marks]
-    classes += [VertexClass(way.text, fill_of(surface, [way.color])) for way in ways]
+    classes = [own for own, _ in (*marks, *ways)]
     if ways:
         classes.append(VertexClass("where they cross", WARNING))
     classes += [VertexClass("other cells", OTHERS), VertexClass("not covered", FAINT)]
-    return SurfaceView(title, labels, classes, cracks=surface.crack_colors, notes=shown.notes)
+    return SurfaceView(title, labels, classes, cracks=surface.crack_colors, notes=notes)
 
 
 def _way(surface: LabelledSurface, color: int, near: Mask, far: Mask) -> list[int]:

@@ -11,10 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
-from itertools import combinations
-from math import comb
 
-import numpy as np
 from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Instance
@@ -28,8 +25,6 @@ from cellcolor.solvers.cpsat.complete_model import least_left_out
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
 
-_FEW_CHOICES = 2000
-"""The most choices of color regions that are tried one by one."""
 _WHOLE = 2**40
 """The integer weight of all cells together, for CP-SAT: a share is exact to about 1e-12."""
 
@@ -190,15 +185,6 @@ def _most_covered(
         OutOfTime: the deadline came first.
     """
     segments = min(segments, len(regions))  # one region may need several
-    if comb(len(regions), segments) <= _FEW_CHOICES:  # a model takes longer to build than these
-        covers = np.zeros((len(regions), len(weights)), dtype=bool)
-        for number, (_, cells) in enumerate(regions):
-            covers[number, list(cells)] = True
-        choices = np.array(list(combinations(range(len(regions)), segments)))
-        covered = covers[choices].any(axis=1)
-        each = covered @ np.array(weights)
-        best = int(np.argmax(each))
-        return set(np.flatnonzero(covered[best]).tolist()), int(each[best])
     model = cp_model.CpModel()
     chosen = [model.new_bool_var("") for _ in regions]
     covering: list[list[cp_model.IntVar]] = [[] for _ in weights]

@@ -14,7 +14,6 @@ from cellcolor.door.oracle import AnyPlan, Oracle
 from cellcolor.door.subject import Solvable
 from cellcolor.errors import CellcolorError, InputError
 from cellcolor.oracle import ProvenRange, Verdict
-from cellcolor.oracle.ranges import ProofCache
 from cellcolor.testing import PICTURES
 
 _SHOWN = 3  # problems of a plan that is not valid
@@ -47,9 +46,8 @@ class SurfaceUnderTest:
             OutOfTime: a scene was not built in time.
         """
         __tracebackhide__ = True
-        cache = None if folder is None else ProofCache(folder, time_limit)
         try:
-            self._oracle = Oracle(source, time_limit=time_limit, cache=cache)
+            self._oracle = Oracle(source, time_limit=time_limit, cache=folder)
         except InputError as error:
             raise error.with_traceback(None) from None
         except OutOfTime:

@@ -18,7 +18,7 @@ from guides import install
 from library import PAPER
 
 from cellcolor.lab.runs.table import Row, read_table
-from cellcolor.lab.workers import Task
+from cellcolor.processes import Task
 from cellcolor.solvers.registry import GROUP
 
 pytestmark = pytest.mark.second

@@ -20,18 +20,11 @@ INDEX = cellcolor.library().index
 GRAPH = "2 3\n0 1\n1 2\n1 2\n2\n-1 0\n0 1\n1 -1\n"
 
 
-def names_in(table: str) -> list[str]:
-    words = [line.split() for line in table.splitlines() if line.strip()]
-    names = {entry.name for entry in INDEX.entries}
-    return [line[0] for line in words if line[0] in names]
-
-
-def test_all_graphs(capsys: Capture) -> None:
+def test_all_names(capsys: Capture) -> None:
     assert run("library") == 0
-    table = capsys.readouterr().out
-    assert names_in(table) == [entry.name for entry in INDEX.entries]
-    (line,) = [line for line in table.splitlines() if line.split()[:1] == ["parallel-corridors"]]
-    assert line.split() == ["parallel-corridors", "by", "hand", *"631303", "2", "cover"]
+    said = capsys.readouterr().out
+    assert said == f"{cellcolor.library()}\n"
+    assert {entry.name for entry in INDEX.entries} < {line.split()[0] for line in said.splitlines()}
 
 
 def test_as_json(capsys: Capture) -> None:

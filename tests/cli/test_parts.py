@@ -13,7 +13,7 @@ from dirty import DIRTY, obj
 import cellcolor
 from cellcolor.cli import main
 from cellcolor.door.starting_part import part_keys_of
-from cellcolor.frontend.parts.mesh_file import load_mesh
+from cellcolor.frontend.parts.mesh_file import MeshObject
 
 
 def stored(folder: Path, name: str) -> Path:
@@ -61,7 +61,7 @@ def test_a_repaired_mesh_is_one_that_scenes_take(
     text = capsys.readouterr().out
     assert "5 holes filled with 20 faces (+0.00293 m^2)" in text
     assert text.endswith(f"wrote {out}, meters_per_unit = 1\n")
-    surface = load_mesh(out, 1.0)
+    surface = MeshObject(file=str(out), meters_per_unit=1.0).surface()
     expected = cellcolor.repair(file, fill_holes_m=0.2)
     assert np.allclose(surface.vertices, expected.vertices, atol=1e-9)
     assert (surface.faces == expected.faces).all()

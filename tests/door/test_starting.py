@@ -18,6 +18,7 @@ from scipy.spatial.transform import Rotation
 from shipped import ROBOTS
 
 import cellcolor
+import cellcolor.door.starting
 from cellcolor.data.candidate_table import VALID
 from cellcolor.door.starting_arm import arm_of, mount_of
 from cellcolor.errors import InputError
@@ -400,6 +401,17 @@ def test_the_home_is_over_the_part_and_well_conditioned(plate: Path, tmp_path: P
     # Of the four postures that cover the plate, the one that does not lean back over the base.
     assert abs(home[0, 0]) < np.pi / 2
     assert any("100 mm over the part" in note for note in made.notes)
+
+
+@pytest.mark.second
+def test_without_room_over_the_part_the_arm_begins_anywhere(
+    plate: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cellcolor.door.starting, "home_over", lambda *_: None)
+    made = cellcolor.new(plate, ROBOTS / "ur5.urdf", tmp_path / "new")
+    assert any("none over the part is free" in note for note in made.notes)
+    prepared = prepare(made.scene)
+    assert home_of(prepared, motion_of(prepared)) is not None
 
 
 @pytest.mark.second

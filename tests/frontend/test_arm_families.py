@@ -51,7 +51,7 @@ def test_a_family_with_seven_joints_is_redundant_for_every_task(
     class Seven(EaikKinematics):
         joints = 7
 
-    monkeypatch.setattr(KINEMATICS, "find", lambda _: Seven)
+    monkeypatch.setattr(KINEMATICS, "find", lambda *_: Seven)
     placements = [np.eye(4), *dh_arms.steps_of(dh_arms.ARMS["kr6"])]
     scene = plate(dh_arms.urdf_of([*placements[:3], *placements[2:]]), "seven")
     locked = 0.0 if turn is None else None
@@ -65,7 +65,7 @@ def test_a_given_turn_takes_six_joints(monkeypatch: pytest.MonkeyPatch) -> None:
     class Five(EaikKinematics):
         joints = 5
 
-    monkeypatch.setattr(KINEMATICS, "find", lambda _: Five)
+    monkeypatch.setattr(KINEMATICS, "find", lambda *_: Five)
     five = dh_arms.urdf_of([np.eye(4), *dh_arms.steps_of(dh_arms.ARMS["kr6"])[1:]])
     scene = plate(five, "five")
     rule = {"turn": {"along": (1.0, 0.0, 0.0)}}

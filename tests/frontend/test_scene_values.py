@@ -17,7 +17,7 @@ from shipped import ROBOTS, WOK, edited
 from cellcolor.errors import InputError
 from cellcolor.frontend import Scene, Setup, build_surface
 from cellcolor.frontend.parts.mesh import ArraysObject
-from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
+from cellcolor.frontend.parts.shapes import CapObject
 from examples import examples
 
 SETUP = ROBOTS / "ur5_polishing.toml"
@@ -140,7 +140,9 @@ def test_a_scene_without_any_file() -> None:
 
 
 def test_a_part_as_arrays_or_a_mesh_is_the_one_in_a_file(tmp_path: Path) -> None:
-    cap = spherical_cap(0.2, 1.1, *disc_mesh(100, 0.15, 1))
+    cap = CapObject(
+        radius_m=0.2, half_angle_rad=1.1, target_vertices=100, jitter=0.15, seed=1
+    ).surface()
     (tmp_path / "cap.obj").write_text(obj(cap.vertices, cap.faces.tolist()))
     table = {"kind": "mesh", "file": "cap.obj", "meters_per_unit": 1.0}
     wok = Scene.read(WOK)

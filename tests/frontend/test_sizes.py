@@ -18,8 +18,8 @@ from cellcolor.cli import main
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.contact.obstacle import BoxObstacle
-from cellcolor.frontend.parts import surface
-from cellcolor.frontend.parts.mesh_file import load_mesh
+from cellcolor.frontend.parts import mesh_file, surface
+from cellcolor.frontend.parts.mesh_file import MeshObject
 from cellcolor.frontend.parts.surface import refine
 from cellcolor.frontend.scene import Scene
 from cellcolor.mesh.triangle_mesh import TriangleMesh
@@ -79,13 +79,13 @@ def test_a_mesh_with_too_many_vertices(tmp_path: Path, monkeypatch: pytest.Monke
     (tmp_path / "box.obj").write_text(obj(BOX, OUTWARD))
     monkeypatch.setattr(surface, "MOST_VERTICES", 7)
     with pytest.raises(InputError, match="8 vertices, at most 7") as caught:
-        load_mesh(tmp_path / "box.obj", 1.0)
+        MeshObject(file=str(tmp_path / "box.obj"), meters_per_unit=1.0).surface()
     assert caught.value.file == str(tmp_path / "box.obj")
     # Where corners are still to be told apart, that many faces are enough to know.
     trimesh.Trimesh(BOX, OUTWARD).export(tmp_path / "box.stl")
-    monkeypatch.setattr(surface, "MOST_VERTICES", 3)
+    monkeypatch.setattr(mesh_file, "MOST_VERTICES", 3)
     with pytest.raises(InputError, match="there are 12, at most 3 vertices"):
-        load_mesh(tmp_path / "box.stl", 1.0)
+        MeshObject(file=str(tmp_path / "box.stl"), meters_per_unit=1.0).surface()
 
 
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.5, 0.2, 0.05]))

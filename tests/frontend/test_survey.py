@@ -16,7 +16,7 @@ from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import UrKinematics
 from cellcolor.frontend.parts.placement import Placement
-from cellcolor.frontend.parts.shapes import disc_mesh, grid_mesh, rectangle, spherical_cap
+from cellcolor.frontend.parts.shapes import CapObject, RectangleObject
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.report import survey, survey_of
@@ -39,7 +39,9 @@ def turned_over(surface: Surface) -> Surface:
     ("scale", "text"), [(0.001, "0.002 x 0.004 x 0 m"), (100.0, "200 x 400 x 0 m")]
 )
 def test_a_wrong_unit_is_seen(scale: float, text: str, arm: UrKinematics) -> None:
-    plate = rectangle(2.0 * scale, 4.0 * scale, *grid_mesh(2.0 * scale, 4.0 * scale, 50, 0.0, 0))
+    plate = RectangleObject(
+        size_x_m=2.0 * scale, size_y_m=4.0 * scale, target_vertices=50
+    ).surface()
     assert str(survey(plate, arm.viewpoints, np.zeros(3))).startswith(text)
 
 
@@ -63,9 +65,8 @@ def test_domes_before_the_robot(
 ) -> None:
     """The robot looks from above a dome's rim, so it sees no inside, or nothing else."""
     position = (away * np.cos(around), away * np.sin(around), height - radius * np.cos(half_angle))
-    dome = spherical_cap(radius, half_angle, *disc_mesh(target, 0.0, 0)).placed(
-        Placement(position_m=position, rpy_rad=(0.0, 0.0, 0.0))
-    )
+    part = CapObject(radius_m=radius, half_angle_rad=half_angle, target_vertices=target)
+    dome = part.surface().placed(Placement(position_m=position, rpy_rad=(0.0, 0.0, 0.0)))
     assert survey(dome, arm.viewpoints, np.zeros(3)).from_behind < 0.1
     (warning,) = survey(turned_over(dome), arm.viewpoints, np.zeros(3)).warnings
     assert "from behind" in warning

@@ -21,7 +21,6 @@ from cellcolor.door.oracle import Oracle
 from cellcolor.errors import InputError
 from cellcolor.lab.families import voronoi
 from cellcolor.oracle import Proof, ProvenRange
-from cellcolor.oracle.ranges import ProofCache
 from examples import examples
 
 ODD = (
@@ -48,7 +47,7 @@ KINDS = ("values", "a member", "all bounds", "fewer segments", "another surface'
 
 def oracle(folder: Path, seed: int = 0) -> Oracle:
     surface = voronoi(seed, "disc", 8, 6, 4)
-    return Oracle(surface, time_limit=20.0, cache=ProofCache(folder, 20.0))
+    return Oracle(surface, time_limit=20.0, cache=folder)
 
 
 def name_of(folder: Path) -> str:

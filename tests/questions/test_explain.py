@@ -18,7 +18,7 @@ from cellcolor.deadline import NEVER
 from cellcolor.frontend import BuildResult, Scene, build_surface
 from cellcolor.frontend.build import StageClock, build_prepared
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.reach import validity
+from cellcolor.frontend.reach import validity_tests
 from cellcolor.frontend.relaxing import (
     TOOL_LENGTH,
     Relaxation,
@@ -111,11 +111,11 @@ def from_scratch(
     for one in what:
         if one.key != "object":
             scene = changed(scene, one)
-    tests = list(validity.STANDARD_TESTS)
+    tests = list(validity_tests.STANDARD_TESTS)
     if "object" in keys:  # no file says that the part may be hit
         tests = [one for one in tests if one.name != "object collision"]
     with monkeypatch.context() as patch:
-        patch.setattr(validity, "STANDARD_TESTS", tuple(tests))
+        patch.setattr(validity_tests, "STANDARD_TESTS", tuple(tests))
         return build_surface(scene)
 
 

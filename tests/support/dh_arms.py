@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.urdf import parse_urdf
+from cellcolor.frontend.setup import RobotFiles
 
 Constants = tuple[tuple[float, float, float, float], ...]
 
@@ -113,6 +114,10 @@ _GEN3 = (
     ((0, 0, -0.061525), (np.pi, 0, 0)),
 )
 OFFSET_WRISTS = ("crx10ia", "xarm6", "hc10", "gen3")
+
+FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")
+LOCKED = FILES.varied(locked_joint_6_rad=0.4)
+"""How a setup names these arms with their tool."""
 
 _LINK = (
     '<link name="l{0}"><inertial><mass value="1"/><inertia ixx=".01" ixy="0" ixz="0" iyy=".01"'

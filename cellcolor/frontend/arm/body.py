@@ -187,29 +187,26 @@ _SAMPLES = 5_000  # of a hull's surface
 _FAR = 0.02  # m; a hull that is farther off its mesh is warned of
 
 
-@dataclass(frozen=True, eq=False)
-class StandIn:
+@dataclass(frozen=True, kw_only=True)
+class MeshBody(Body):
     """What collides in the place of a link's mesh.
 
     Attributes:
         chosen: hull or exact.
         vertices, faces: the mesh, in the frame of the joint that carries it, m.
-        body: what collides.
     """
 
-    link: str
     file: Path
     chosen: MeshCollision
     vertices: Array
     faces: Index
-    body: Body
 
     @cached_property
     def off_m(self) -> float:
         """How far the farthest of many points on the hull is from the mesh; 0 of the mesh."""
         if self.chosen == "exact":
             return 0.0
-        surface = trimesh.Trimesh(self.body.shape.vertices, self.body.shape.faces, process=False)
+        surface = trimesh.Trimesh(self.shape.vertices, self.shape.faces, process=False)
         points, _ = trimesh.sample.sample_surface(surface, _SAMPLES, seed=0)
         squares = igl.point_mesh_squared_distance(points, self.vertices, self.faces)[0]
         return math.sqrt(squares.max())
@@ -242,7 +239,7 @@ class StandIn:
 
 def mesh_body(
     link: str, joint: int, file: Path, vertices: Array, faces: Index, chosen: MeshCollision
-) -> StandIn:
+) -> MeshBody:
     """What stands for a mesh, given in the frame of its joint, m.
 
     Raises:
@@ -253,16 +250,17 @@ def mesh_body(
     if solid is None:
         message = "the mesh lies in a plane, so it has no hull: choose 'exact' for its link"
         raise InputError(str(file), None, message)
-    return StandIn(link, file, chosen, vertices, faces, _solid_body(link, joint, solid))
+    own = _solid(solid)
+    return MeshBody(link, joint, *own, file=file, chosen=chosen, vertices=vertices, faces=faces)
 
 
-def _solid_body(link: str, joint: int, solid: Shape) -> Body:
-    """A hull or a mesh as a body, its capsule around the box that is around it."""
+def _solid(solid: Shape) -> tuple[Array, Array, float, bool, Shape]:
+    """What a body has of a hull or a mesh, with the capsule around the box that is around it."""
     corners = solid.corners
     middle, edges = corners.mean(axis=0), corners[[1, 2, 4]] - corners[0]
     across, thick, along = sorted(edges, key=np.linalg.norm)
     radius = float(np.hypot(np.linalg.norm(across), np.linalg.norm(thick))) / 2
-    return Body(link, joint, middle - along / 2, middle + along / 2, radius, False, solid)
+    return middle - along / 2, middle + along / 2, radius, False, solid
 
 
 def _round_bodies(
@@ -280,32 +278,29 @@ def _round_bodies(
     for shape, at in shapes:
         if shape.kind not in ("capsule", "cylinder"):
             continue
-        radius, length = shape.sizes
-        center, half = np.array(at.translation), np.array(at.rotation)[:, 2] * (length / 2)
-        start, end = center - half, center + half
-        round_ends = shape.kind == "capsule"
-        if not round_ends:
-            caps = [
-                next((s for s in spheres if _is_cap(s, point, radius)), None)
-                for point in (start, end)
+        (radius, length), flat = shape.sizes, shape.kind == "cylinder"
+        half = at.rotation[:, 2] * (length / 2)
+        ends = at.translation - half, at.translation + half
+        caps = [
+            [
+                number
+                for number, (center, other) in enumerate(spheres)
+                if max(abs(other - radius), float(np.linalg.norm(center - end))) < _SAME
             ]
-            round_ends = caps[0] is not None and caps[1] is not None
-            if round_ends:
-                spheres = [sphere for sphere in spheres if not any(sphere is c for c in caps)]
-        bodies.append(Body(link, joint, start, end, radius, flat=not round_ends))
+            for end in ends
+        ]
+        if flat and all(caps):
+            flat = False
+            spheres = [each for k, each in enumerate(spheres) if k not in caps[0] + caps[1]]
+        bodies.append(Body(link, joint, *ends, radius, flat))
     bodies.extend(Body(link, joint, at, at, radius, flat=False) for at, radius in spheres)
     return bodies
 
 
-def _is_cap(sphere: tuple[Array, float], point: Array, radius: float) -> bool:
-    center, own = sphere
-    return abs(own - radius) < _SAME and float(np.linalg.norm(center - point)) < _SAME
-
-
 def place_shapes(
     whole: Urdf, model: pin.Model, files: RobotFiles, folder: Path
-) -> tuple[tuple[Body, ...], tuple[StandIn, ...]]:
-    """Bodies of all links, base first, and what stands for the meshes among them.
+) -> tuple[Body, ...]:
+    """Bodies of all links, base first.
 
     Args:
         whole: arm and tool as one tree.
@@ -322,7 +317,6 @@ def place_shapes(
             raise InputError(None, f"robot.mesh_collision_of.{name}", message)
     packages = [folder / name for name in files.package_folders]
     bodies: list[Body] = []
-    stand_ins: list[StandIn] = []
     for name, link in whole.links.items():
         frame = model.frames[model.getFrameId(name, pin.FrameType.BODY)]
         joint, placed = frame.parentJoint, [frame.placement * each.place for each in link.shapes]
@@ -332,13 +326,12 @@ def place_shapes(
                 corners = trimesh.creation.box(shape.sizes).vertices
                 solid = convex_hull(corners @ at.rotation.T + at.translation)
                 assert solid is not None  # no side of it is 0
-                bodies.append(_solid_body(name, joint, solid))
+                bodies.append(Body(name, joint, *_solid(solid)))
             elif shape.kind == "mesh":
                 place = f"link[{name}].collision[{number}].mesh"
                 file = find_mesh(shape.mesh, link.file, place, link.folder, packages)
                 vertices, faces = load_link_mesh(file, shape.sizes)
                 chosen = files.mesh_collision_of.get(name, files.mesh_collision)
                 own_mesh = (vertices @ at.rotation.T + at.translation, faces)
-                stand_ins.append(mesh_body(name, joint, file, *own_mesh, chosen))
-                bodies.append(stand_ins[-1].body)
-    return tuple(bodies), tuple(stand_ins)
+                bodies.append(mesh_body(name, joint, file, *own_mesh, chosen))
+    return tuple(bodies)

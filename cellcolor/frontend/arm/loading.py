@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -62,14 +63,13 @@ def load_robot(
     for fault in weight_faults(whole) if force else ():
         raise InputError(fault.file, fault.field, f"{fault.message} ({_NO_FORCE})")
     model = pinocchio_model(whole)
-    bodies, stand_ins = place_shapes(whole, model, files, folder)
+    bodies = place_shapes(whole, model, files, folder)
     tip = model.frames[model.getFrameId(files.tip_link, pin.FrameType.BODY)]
     own = [whole.joints[name] for name in model.names[1:]]
-    axes = np.array([joint.axis for joint in own]).reshape(-1, 3)
-    return Robot(
+    robot = Robot(
         files=(arm.file, tool.file),
         placement=np.array([each.homogeneous for each in list(model.jointPlacements)[1:]]),
-        axis=axes,
+        axis=np.array([joint.axis for joint in own]).reshape(-1, 3),
         slides=np.array([joint.kind == PRISMATIC for joint in own], dtype=bool),
         lower=np.array([joint.lower for joint in own]),
         upper=np.array([joint.upper for joint in own]),
@@ -81,11 +81,12 @@ def load_robot(
         bodies=bodies,
         tested_pairs=_tested_pairs(whole, bodies, files.may_touch),
         joint_names=tuple(joint.name for joint in own),
-        warnings=_warnings(whole, own) + notes_on_tool(model, tool.root, files.tip_link, axes),
+        warnings=_warnings(whole, own),
         model=model,
-        stand_ins=stand_ins,
         tool_links=frozenset(link.name for link in tool.links.values() if link.shapes),
     )
+    notes = notes_on_tool(robot, tool.root, files.tip_link)
+    return replace(robot, warnings=robot.warnings + notes)
 
 
 def _check_chain(whole: Urdf, tool: Urdf, tip_link: str, wanted: tuple[int, int]) -> None:

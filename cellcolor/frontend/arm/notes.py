@@ -9,7 +9,6 @@ in millimeters is a thousand times too large. Either way a contact of the link m
 from __future__ import annotations
 
 import numpy as np
-import pinocchio as pin
 
 from cellcolor.arrays import Array
 from cellcolor.data.wording import looks_like_millimeters
@@ -21,25 +20,17 @@ _NEAR = 1e-3  # m; a tip or a flange so near to where it is seen from shows no d
 _BACK = -0.5  # the cosine of 120 degrees; bent tools and tools that stand aside are less turned
 
 
-def notes_on_tool(model: pin.Model, root: str, tip_link: str, axes: Array) -> tuple[str, ...]:
+def notes_on_tool(robot: Robot, root: str, tip_link: str) -> tuple[str, ...]:
     """A sentence if the tip's z axis, which goes into the part, points back to the arm.
 
     Or if all of the tool does, since it is mounted the wrong way round.
 
     Args:
-        model: arm and tool.
         root: the tool's root link, at the flange.
         tip_link: the tool's tip.
-        axes: (joints, 3) of the joints, each in its own frame.
     """
-    at = {}
-    for link in (root, tip_link):
-        frame = model.frames[model.getFrameId(link, pin.FrameType.BODY)]
-        if frame.parentJoint != model.njoints - 1:
-            return ()  # the flange is not at the end of the chain
-        at[link] = frame.placement
-    flange, tip = np.array(at[root].translation), np.array(at[tip_link].translation)
-    along, z = tip - flange, np.array(at[tip_link].rotation)[:, 2]
+    flange = robot.frame_of(root)[:3, 3]
+    along, z = robot.tip[:3, 3] - flange, robot.tip[:3, 2]
     length = float(np.linalg.norm(along))
     if length > _NEAR and z @ along < _BACK * length:
         off = np.degrees(np.arccos(np.clip(z @ along / length, -1, 1)))
@@ -47,7 +38,7 @@ def notes_on_tool(model: pin.Model, root: str, tip_link: str, axes: Array) -> tu
             f"the z axis of the tip link {tip_link!r} points back to the flange, {off:.0f} degrees "
             "off the way from there to the tip: it has to point out of the tool, into the part",
         )
-    outward = _outward(model, flange, axes)
+    outward = _outward(robot, flange)
     if outward is not None and z @ outward < _BACK and along @ outward < _BACK * length + _NEAR:
         return (
             f"the tool goes from the flange back into the arm, its tip link {tip_link!r} "
@@ -56,15 +47,15 @@ def notes_on_tool(model: pin.Model, root: str, tip_link: str, axes: Array) -> tu
     return ()
 
 
-def _outward(model: pin.Model, flange: Array, axes: Array) -> Array | None:
+def _outward(robot: Robot, flange: Array) -> Array | None:
     """The last joint's axis (3,) in its own frame, from the wrist to the flange."""
-    if len(axes) < 2:
+    if robot.joints < 2:
         return None
-    last, before = model.jointPlacements[model.njoints - 1].inverse(), axes[-2]
-    beside, axis = last.rotation @ before, axes[-1]
+    axis, back = robot.axis[-1], np.linalg.inv(robot.placement[-1])
+    beside = back[:3, :3] @ robot.axis[-2]
     if 1.0 - float(axis @ beside) ** 2 < _NEAR:
         return None
-    wrist = nearest_points(np.zeros(3), axis, np.array(last.translation), beside)[0]
+    wrist = nearest_points(np.zeros(3), axis, back[:3, 3], beside)[0]
     ahead = float((flange - wrist) @ axis)
     return None if abs(ahead) < _NEAR else np.asarray(axis * np.sign(ahead))
 

@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from cellcolor.arrays import Array, Index, Mask
-from cellcolor.frontend.arm.body import Body, StandIn
+from cellcolor.frontend.arm.body import Body, MeshBody
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,6 @@ class Robot:
     joint_names: tuple[str, ...]
     warnings: tuple[str, ...]
     model: pin.Model = field(repr=False, compare=False)
-    stand_ins: tuple[StandIn, ...] = ()
     task: TaskSpace = FREE_TURN
     tool_links: frozenset[str] = frozenset()
 
@@ -152,6 +151,11 @@ class Robot:
         elif link not in standing:
             raise KeyError(link)
         return self.frame_of(link)
+
+    @property
+    def stand_ins(self) -> tuple[MeshBody, ...]:
+        """The bodies that collide in the place of a link's mesh."""
+        return tuple(body for body in self.bodies if isinstance(body, MeshBody))
 
     @property
     def has_solids(self) -> bool:

@@ -14,7 +14,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
 from cellcolor.frontend.arm.body import Kind, Shape
-from cellcolor.frontend.parts.mesh_file import load_mesh
+from cellcolor.frontend.parts.mesh_file import MeshObject
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import grid_mesh
 from cellcolor.frontend.parts.surface import Faces
@@ -58,7 +58,8 @@ class MeshObstacle(Obstacle):
     meters_per_unit: Positive
 
     def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shell:
-        mesh = load_mesh(folder / self.file, self.meters_per_unit, deadline=deadline)
+        part = MeshObject(file=self.file, meters_per_unit=self.meters_per_unit)
+        mesh = part.surface(folder, deadline)
         return mesh.vertices, mesh.faces
 
 

@@ -51,6 +51,16 @@ class Component:
     closed: bool
 
 
+def _fault(row: str, one: str, what: str = "") -> Any:
+    """A field with the places of a fault, or with how many there are, and what a reader is told.
+
+    Args:
+        row: that it is told in.
+        one: thing that has the fault, and ``what`` is wrong with it.
+    """
+    return field(metadata={"row": row, "one": one, "what": what})
+
+
 @dataclass(frozen=True, eq=False)
 class Inspection:
     """A mesh in numbers; places in m.
@@ -60,18 +70,12 @@ class Inspection:
         unit: of its coordinates: ``m``, ``mm``, ``cm`` or ``in``.
         unit_reason: why; for a given unit, that it was given.
         triangles, vertices: how many; vertices that no face has are not counted.
-        unused_vertices: those.
-        merged_vertices: how many are in one place with an earlier one.
         low_m, high_m: corners of the bounding box.
         components: from the largest area to the smallest.
         holes: from the longest border to the shortest.
-        non_manifold_edges, non_manifold_vertices: places of edges with more than two faces, and of
-            vertices on no such edge whose faces form several fans.
-        duplicate_faces: how many have the corners of an earlier one.
-        flat_faces: how many have no area.
+        non_manifold_vertices: places of vertices on no non-manifold edge whose faces form several
+            fans.
         mixed_winding: how many faces wind against those around them.
-        inside_out: how many closed components have a negative volume.
-        crossings: places of pairs of faces that cross.
         edge_lengths_m: least, lower quartile, median, upper quartile, greatest.
         refusal: why a scene could not use the mesh as it is; None if it could.
         repairs: what a repair would change, without filling holes or remeshing.
@@ -86,20 +90,20 @@ class Inspection:
     unit_reason: str
     triangles: int
     vertices: int
-    unused_vertices: int
-    merged_vertices: int
     low_m: Place
     high_m: Place
     area_m2: float
     components: tuple[Component, ...]
-    holes: tuple[Hole, ...]
-    non_manifold_edges: tuple[Place, ...]
-    non_manifold_vertices: tuple[Place, ...]
-    duplicate_faces: int
-    flat_faces: int
-    mixed_winding: int
-    inside_out: int
-    crossings: tuple[Place, ...]
+    holes: tuple[Hole, ...] = _fault("holes", "border")
+    non_manifold_edges: tuple[Place, ...] = _fault("non-manifold", "edge", " of 3 faces or more")
+    non_manifold_vertices: tuple[Place, ...] = _fault("non-manifold", "vertex", " not manifold")
+    merged_vertices: int = _fault("twins", "vertex", " in the same place as another")
+    unused_vertices: int = _fault("unused", "vertex", " without a face")
+    duplicate_faces: int = _fault("duplicates", "face", " there twice")
+    flat_faces: int = _fault("flat", "face", " without area")
+    mixed_winding: int = _fault("winding", "face", " against those around")
+    inside_out: int = _fault("inside out", "closed component", " with a negative volume")
+    crossings: tuple[Place, ...] = _fault("crossings", "pair")
     edge_lengths_m: tuple[float, ...]
     refusal: str | None
     repairs: tuple[str, ...]
@@ -147,30 +151,21 @@ class Inspection:
         )
 
     def _faults(self) -> Iterator[tuple[str, str]]:
-        """What each fault that there is is called, and how often and where it is found."""
-        holes = [f"{1e3 * hole.length_m:.3g} mm long at {_at(hole.place)}" for hole in self.holes]
-        edges, vertices, crossings = (
-            list(map(_at, places))
-            for places in (self.non_manifold_edges, self.non_manifold_vertices, self.crossings)
-        )
-        found: list[tuple[str, list[str] | int, str, str]] = [
-            ("holes", holes, "border", ""),
-            ("non-manifold", edges, "edge", " of 3 faces or more"),
-            ("non-manifold", vertices, "vertex", " not manifold"),
-            ("twins", self.merged_vertices, "vertex", " in the same place as another"),
-            ("unused", self.unused_vertices, "vertex", " without a face"),
-            ("duplicates", self.duplicate_faces, "face", " there twice"),
-            ("flat", self.flat_faces, "face", " without area"),
-            ("winding", self.mixed_winding, "face", " against those around"),
-            ("inside out", self.inside_out, "closed component", " with a negative volume"),
-            ("crossings", crossings, "pair", ""),
-        ]
-        for name, those, one, what in found:
-            number, places = (those, []) if isinstance(those, int) else (len(those), those)
-            more = [f"and {number - _SHOWN:,} more"] if len(places) > _SHOWN else []
-            where = ": " * bool(places) + ", ".join(places[:_SHOWN] + more)
-            if number:
-                yield name, f"{counted(number, one)}{what}{where}"
+        """How often each fault that there is is found, and where."""
+        for one in fields(self):
+            found = getattr(self, one.name)
+            if "row" not in one.metadata or not found:
+                continue
+            number, places = (found, ()) if isinstance(found, int) else (len(found), found)
+            where = [
+                f"{1e3 * at.length_m:.3g} mm long at {_at(at.place)}"
+                if isinstance(at, Hole)
+                else _at(at)
+                for at in places[:_SHOWN]
+            ]
+            where += [f"and {number - _SHOWN:,} more"] if len(places) > _SHOWN else []
+            said = f"{counted(number, one.metadata['one'])}{one.metadata['what']}"
+            yield one.metadata["row"], said + ": " * bool(places) + ", ".join(where)
 
 
 def inspect_mesh(

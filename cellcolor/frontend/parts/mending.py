@@ -15,7 +15,7 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.surface import Faces
-from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
+from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped, repeated_corners
 
 _SAME = 1e-8  # share of the mesh's size; vertices this close count as one place
 _FLAT = 1e-6  # of the longest side's square; a doubled area that counts as none
@@ -80,12 +80,6 @@ def cleaned(vertices: Array, faces: Faces) -> Cleaned:
         raise InputError(None, "faces", "none is left that has an area and is no copy of another")
     unused, twins = len(vertices) - there, there - len(points)
     return Cleaned(points, corners, unused, twins, int(folded.sum()), double, flat)
-
-
-def repeated_corners(faces: Faces) -> Mask:
-    """The faces (m,) with a vertex that is two of their corners."""
-    a, b, c = faces.T
-    return np.asarray((a == b) | (b == c) | (c == a))
 
 
 def repeated_faces(faces: Faces) -> Mask:

@@ -26,7 +26,7 @@ from cellcolor.frontend.parts.mending import (
     used,
 )
 from cellcolor.frontend.parts.surface import Faces, Part, Surface, check_vertices, refine
-from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.mesh.triangle_mesh import TriangleMesh, check_corners
 
 _FARTHEST, _SMALLEST = 1e6, 1e-6  # m
 
@@ -59,7 +59,7 @@ def mesh_surface(
             fit, before or after halving edges.
     """
     deadline.check()
-    check_corners(vertices, faces)  # here already: a repair would take -1 for the last one
+    check_corners(faces, len(vertices))  # here already: a repair would take -1 for the last one
     if mend and len(faces) and np.isfinite(vertices).all():
         # Sizes first: a triangle that is far too long for a unit looks like one without area.
         _check_size(vertices[np.unique(faces)], meters_per_unit)
@@ -107,19 +107,6 @@ def mesh_surface(
     normals /= size
     points = mesh.points * meters_per_unit
     return Surface(points, mesh.corners, normals, faceted=True, divided=divided)
-
-
-def check_corners(vertices: Array, faces: Faces) -> None:
-    """Refuse a face that has a vertex which is not there.
-
-    Raises:
-        InputError: names the corner.
-    """
-    unknown = np.argwhere((faces < 0) | (faces >= len(vertices)))
-    if len(unknown):
-        face, corner = unknown[0]
-        message = f"there is no vertex {faces[face, corner]}"
-        raise InputError(None, f"faces[{face}][{corner}]", message)
 
 
 def _repaired(vertices: Array, faces: Faces) -> tuple[Array, Faces]:

@@ -23,10 +23,10 @@ import trimesh
 from cellcolor.arrays import Array, Index, Mask, numbered
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming, system_errors
-from cellcolor.frontend.parts.mesh import check_corners, mesh_surface
+from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.surface import MOST_VERTICES, Faces, Part, Surface
 from cellcolor.frontend.tables import Positive
-from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.mesh.triangle_mesh import TriangleMesh, check_corners
 
 _MOST_BYTES = 200_000_000  # some millions of triangles; reading takes ten times as much memory
 _PLY_CORNERS = ("vertex_indices", "vertex_index")
@@ -46,48 +46,35 @@ class MeshObject(Part):
     NEWER = ("flip",)
 
     def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:
-        """The mesh as it is, or refined or repaired on request; see :func:`load_mesh`."""
-        units, longest = self.meters_per_unit, self.max_edge_m
-        return load_mesh(folder / self.file, units, longest, self.repair, deadline, self.flip)
+        """The mesh, checked, or refined or repaired on request.
 
+        See :func:`~cellcolor.frontend.parts.mesh.mesh_surface`. STL has no shared vertices, so
+        there the corners with equal coordinates are one vertex. With ``flip`` the faces are turned
+        over; of an open mesh the other side is then the outside.
 
-def load_mesh(
-    file: Path,
-    meters_per_unit: float,
-    max_edge_m: float | None = None,
-    mend: bool = False,
-    deadline: Deadline = NEVER,
-    flip: bool = False,
-) -> Surface:
-    """A mesh file as a surface, checked; see :func:`~cellcolor.frontend.parts.mesh.mesh_surface`.
-
-    STL has no shared vertices, so there the corners with equal coordinates are one vertex.
-
-    Args:
-        max_edge_m, mend: see :func:`~cellcolor.frontend.parts.mesh.mesh_surface`.
-        deadline: when to give up; not looked at while another library reads the file.
-        flip: turn the faces over; of an open mesh the other side is then the outside.
-
-    Raises:
-        InputError: missing or unreadable file, or the mesh cannot be used; names file and element.
-    """
-    try:
-        vertices, faces = read_mesh(file, deadline)
-        if len(faces) > 3 * MOST_VERTICES:  # there are two for each vertex, more with handles
-            message = f"there are {len(faces):,}, at most {MOST_VERTICES:,} vertices fit"
-            raise InputError(None, "faces", message)
-        faces = np.ascontiguousarray(faces[:, ::-1]) if flip else faces
-        return mesh_surface(vertices, faces, meters_per_unit, max_edge_m, mend, deadline)
-    except InputError as error:
-        # Of halving edges the scene is to blame, which alone can say that it was asked for.
-        if error.field == "max_edge_m":
-            raise
-        message = error.message
-        if error.field and error.field.startswith(("faces[", "vertices[")):
-            # A scene repairs less than the command does.
-            command = f"cellcolor repair {file} -o {file.stem}-repaired.obj"
-            message += f"; repair it first: {command}" if mend else ""
-        raise InputError(error.file or str(file), error.field, message) from error
+        Raises:
+            InputError: missing or unreadable file, or the mesh cannot be used; names file and
+                element.
+        """
+        file = folder / self.file
+        try:
+            vertices, faces = read_mesh(file, deadline)
+            if len(faces) > 3 * MOST_VERTICES:  # there are two for each vertex, more with handles
+                message = f"there are {len(faces):,}, at most {MOST_VERTICES:,} vertices fit"
+                raise InputError(None, "faces", message)
+            faces = np.ascontiguousarray(faces[:, ::-1]) if self.flip else faces
+            units, longest = self.meters_per_unit, self.max_edge_m
+            return mesh_surface(vertices, faces, units, longest, self.repair, deadline)
+        except InputError as error:
+            # Of halving edges the scene is to blame, which alone can say that it was asked for.
+            if error.field == "max_edge_m":
+                raise
+            message = error.message
+            if error.field and error.field.startswith(("faces[", "vertices[")):
+                # A scene repairs less than the command does.
+                command = f"cellcolor repair {file} -o {file.stem}-repaired.obj"
+                message += f"; repair it first: {command}" if self.repair else ""
+            raise InputError(error.file or str(file), error.field, message) from error
 
 
 def read_mesh(file: Path, deadline: Deadline = NEVER) -> tuple[Array, Faces]:
@@ -214,7 +201,7 @@ def _ply_faces(mesh: trimesh.Trimesh) -> Faces:
     rows = [np.asarray(row, dtype=np.int64) for row in (data[name] if text else data[name]["f1"])]
     sizes = np.array([len(row) for row in rows])
     vertices = np.asarray(mesh.vertices)
-    check_corners(vertices, np.asarray(mesh.faces))
+    check_corners(np.asarray(mesh.faces), len(vertices))
     return triangulated(vertices, np.concatenate(rows), sizes, lambda face: f"faces[{face}]")
 
 

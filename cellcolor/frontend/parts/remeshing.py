@@ -26,12 +26,11 @@ from cellcolor.frontend.parts.mending import (
     border_groups,
     crossing_pairs,
     flat_faces,
-    repeated_corners,
     repeated_faces,
     used,
 )
 from cellcolor.frontend.parts.surface import MOST_VERTICES, SHARP, Faces, refine
-from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.mesh.triangle_mesh import TriangleMesh, repeated_corners
 from cellcolor.processes import run_alone
 
 _MEMORY = 3072.0  # MB (2**20 bytes) that the remesher may take

@@ -24,10 +24,10 @@ from cellcolor.frontend.parts.mending import (
     turned,
     used,
 )
-from cellcolor.frontend.parts.mesh import check_corners, mesh_surface
+from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.remeshing import Deviation, length_for, remeshed
 from cellcolor.frontend.parts.surface import MOST_VERTICES, Faces
-from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.mesh.triangle_mesh import TriangleMesh, check_corners
 
 MOST_FACES = 3_000_000  # a kilobyte each
 LEAST_SHARE = 0.01
@@ -233,7 +233,7 @@ def _check(vertices: Array, faces: Faces) -> None:
     if len(bad):
         row, axis = bad[0]
         raise InputError(None, f"vertices[{row}][{axis}]", "is not a finite number")
-    check_corners(vertices, faces)
+    check_corners(faces, len(vertices))
     if not len(faces):
         raise InputError(None, "faces", "there are none")
     if len(faces) > MOST_FACES:

@@ -21,9 +21,6 @@ class _Sampled(Part):
     jitter: Annotated[FiniteFloat, Field(ge=0, le=0.25)] = 0.0
     seed: Annotated[int, Field(ge=0)] = 0
 
-    def _grid(self, width: float, height: float) -> tuple[Array, Faces]:
-        return grid_mesh(width, height, self.target_vertices, self.jitter, self.seed)
-
 
 class CapObject(_Sampled):
     """A spherical cap about +z, the sphere's center at the object's origin."""
@@ -34,8 +31,13 @@ class CapObject(_Sampled):
 
     def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:  # noqa: ARG002
         """The cap as rings of vertices about its pole."""
-        disc = disc_mesh(self.target_vertices, self.jitter, self.seed)
-        return spherical_cap(self.radius_m, self.half_angle_rad, *disc)
+        disc, faces = disc_mesh(self.target_vertices, self.jitter, self.seed)
+        squared = (disc**2).sum(axis=1)
+        height = 1 - squared * (1 - np.cos(self.half_angle_rad))  # cosine of the polar angle
+        stretch = np.zeros(len(disc))
+        stretch[1:] = np.sqrt((1 - height[1:] ** 2) / squared[1:])
+        normals = np.column_stack([disc * stretch[:, None], height])
+        return Surface(self.radius_m * normals, faces, normals)
 
 
 class PipeObject(_Sampled):
@@ -48,8 +50,13 @@ class PipeObject(_Sampled):
 
     def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:  # noqa: ARG002
         """The pipe as a grid that is bent."""
-        grid = self._grid(self.radius_m * self.arc_rad, self.length_m)
-        return pipe(self.radius_m, self.arc_rad, self.length_m, *grid)
+        sizes = self.radius_m * self.arc_rad, self.length_m
+        grid, faces = grid_mesh(*sizes, self.target_vertices, self.jitter, self.seed)
+        angle = grid[:, 0] / self.radius_m - self.arc_rad / 2
+        zero = np.zeros(len(grid))
+        normals = np.column_stack([np.sin(angle), zero, np.cos(angle)])
+        along = np.column_stack([zero, grid[:, 1] - self.length_m / 2, zero])
+        return Surface(self.radius_m * normals + along, faces, normals)
 
 
 class RectangleObject(_Sampled):
@@ -61,7 +68,10 @@ class RectangleObject(_Sampled):
 
     def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:  # noqa: ARG002
         """The rectangle as a grid."""
-        return rectangle(self.size_x_m, self.size_y_m, *self._grid(self.size_x_m, self.size_y_m))
+        sizes = self.size_x_m, self.size_y_m
+        grid, faces = grid_mesh(*sizes, self.target_vertices, self.jitter, self.seed)
+        vertices = np.column_stack([grid - np.array(sizes) / 2, np.zeros(len(grid))])
+        return Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (len(grid), 1)))
 
 
 def disc_mesh(target: int, jitter: float, seed: int) -> tuple[Array, Faces]:
@@ -133,40 +143,3 @@ def grid_mesh(
     first = np.where(even, np.column_stack([a, b, c]), np.column_stack([a, b, d]))
     second = np.where(even, np.column_stack([a, c, d]), np.column_stack([b, c, d]))
     return points.reshape(-1, 2), np.concatenate([first, second]).astype(np.int64)
-
-
-def spherical_cap(radius: float, half_angle: float, disc: Array, faces: Faces) -> Surface:
-    """A cap of a sphere about +z, centered on the origin.
-
-    Args:
-        half_angle: between the axis and the rim, rad.
-        disc, faces: mesh of the unit disc, its first vertex in the center.
-    """
-    squared = (disc**2).sum(axis=1)
-    height = 1 - squared * (1 - np.cos(half_angle))  # cosine of the polar angle
-    stretch = np.zeros(len(disc))
-    stretch[1:] = np.sqrt((1 - height[1:] ** 2) / squared[1:])
-    normals = np.column_stack([disc * stretch[:, None], height])
-    return Surface(radius * normals, faces, normals)
-
-
-def pipe(radius: float, arc: float, length: float, grid: Array, faces: Faces) -> Surface:
-    """Part of the outside of a pipe along y, its crown at +z.
-
-    Args:
-        arc: angle from edge to edge, rad.
-        grid, faces: mesh of the rectangle from (0, 0) to (radius * arc, length).
-    """
-    angle = grid[:, 0] / radius - arc / 2
-    normals = np.column_stack([np.sin(angle), np.zeros(len(grid)), np.cos(angle)])
-    along = np.column_stack([np.zeros(len(grid)), grid[:, 1] - length / 2, np.zeros(len(grid))])
-    return Surface(radius * normals + along, faces, normals)
-
-
-def rectangle(size_x: float, size_y: float, grid: Array, faces: Faces) -> Surface:
-    """A flat rectangle in z = 0, centered on the origin, its outside at +z.
-
-    ``grid`` and ``faces`` are a mesh of the rectangle from (0, 0) to (size_x, size_y).
-    """
-    vertices = np.column_stack([grid - [size_x / 2, size_y / 2], np.zeros(len(grid))])
-    return Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (len(grid), 1)))

@@ -126,8 +126,9 @@ def prepare_arm(setup: Setup) -> PreparedArm:
         InputError: one cannot be used, or a key of the setup does not fit it; names the file.
     """
     with naming(setup.file):
-        robot = _robot(setup)
-        kinematics = _kinematics(setup, robot)
+        family = KINEMATICS.find(setup.robot.kinematics, "robot.kinematics")
+        robot = _robot(setup, family)
+        kinematics = _kinematics(setup, robot, family)
         reach = float(f"{kinematics.reach:.4g}")
         if kinematics.reach > _LONGEST:
             message = f"the arm reaches {reach} m: {looks_like_millimeters(reach)}"
@@ -136,17 +137,9 @@ def prepare_arm(setup: Setup) -> PreparedArm:
     return PreparedArm(setup, robot, kinematics, limits)
 
 
-def _family(setup: Setup) -> type[InverseKinematics]:
-    """The family of arms that a setup names."""
-    try:
-        return KINEMATICS.find(setup.robot.kinematics)
-    except InputError as error:
-        raise InputError(None, "robot.kinematics", error.message) from error
-
-
-def _kinematics(setup: Setup, robot: Robot) -> InverseKinematics:
+def _kinematics(setup: Setup, robot: Robot, family: type[InverseKinematics]) -> InverseKinematics:
     """The arm's inverse kinematics for the task of its setup."""
-    family, turn = _family(setup), setup.task.turn
+    turn = setup.task.turn
     kinematics = (
         family(robot, setup.robot)
         if turn is None
@@ -158,11 +151,10 @@ def _kinematics(setup: Setup, robot: Robot) -> InverseKinematics:
     return kinematics
 
 
-def _robot(setup: Setup) -> Robot:
+def _robot(setup: Setup, family: type[InverseKinematics]) -> Robot:
     files, folder = setup.robot, setup.folder
     arm = _urdf(files.arm_urdf, "arm_urdf", folder)
     tool = _urdf(files.tool_urdf, "tool_urdf", folder)
-    family = _family(setup)
     force = setup.constraints.force
     robot = load_robot(
         arm, tool, files, family.joints, family.prismatic, folder=folder, force=force

@@ -19,9 +19,8 @@ from cellcolor.decomposition import decompose
 from cellcolor.errors import CellcolorError, InputError, RefusedResult, SolverMissing, TooLarge
 from cellcolor.lab.families.registry import GROWING, LARGE, MEDIUM, SMALL, Family
 from cellcolor.lab.runs.table import LATE, Key, Row, Status
-from cellcolor.lab.workers import Task, Workers, as_they_end
 from cellcolor.machine import this_machine
-from cellcolor.processes import Ended
+from cellcolor.processes import Ended, Task, as_they_end
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.registry import solver_version
 
@@ -166,9 +165,9 @@ class Sweep:
     def _of_each(self) -> int:
         return len(self.limits) * self.repetitions * len(self.contestants)
 
-    def run(self, workers: Workers) -> Iterator[Row]:
-        """A row for each run, as they end."""
-        for known, ended in as_they_end(workers, self._tasks()):
+    def run(self, jobs: int) -> Iterator[Row]:
+        """A row for each run, as they end, so many at a time."""
+        for known, ended in as_they_end(jobs, self._tasks()):
             yield _row(known, ended)
 
     def _tasks(self) -> Iterator[tuple[dict[str, Any], Task]]:

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from cellcolor.arrays import Array, Index
-from cellcolor.data.bounds import Shown, marks_of
 from cellcolor.data.candidate_table import VALID
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.surface import LabelledSurface
@@ -45,7 +44,7 @@ from cellcolor.pictures.surface_pictures import (
     with_shares,
 )
 from cellcolor.pictures.viewer.page import layer_data, lines_data, packed, picture_data, text_data
-from cellcolor.pictures.why_not_fewer import view_of
+from cellcolor.pictures.why_not_fewer import view_of_cells
 from cellcolor.questions.answers import Front, FrontPoint
 
 
@@ -58,8 +57,7 @@ def modes_of(report: MotionReport) -> tuple[list[Picture3D], int]:
     views = [replace(by_reason(surface, report.built.candidates), title="Out of reach")]
     witness = () if report.solution is None else report.solution.witness
     if len(witness) > 1:
-        shown = Shown(marks_of(report.decomposition.instance, witness), (), ())
-        proof = view_of(surface, report.decomposition, "Cells of the proof", shown)
+        proof = view_of_cells(surface, report.decomposition, "Cells of the proof", witness)
         views.append(replace(proof, cracks=()))
     buttons = len(views)
     answered = report.answered

@@ -1,4 +1,4 @@
-"""A kind of bound is one thing: what it says and shows, and a verifier beside it."""
+"""A kind of bound is one thing: what it says, and a verifier beside it."""
 
 from __future__ import annotations
 
@@ -11,10 +11,8 @@ from meshes import drawn
 import cellcolor
 from cellcolor.checker.certificates import VERIFIERS
 from cellcolor.checker.proof import Proof, Refused
-from cellcolor.data.bounds import KINDS, Bound, BoundKind, Certificate, Mark, Shown, certificate_of
-from cellcolor.data.instance import Instance
+from cellcolor.data.bounds import KINDS, Bound, BoundKind, Certificate, certificate_of
 from cellcolor.data.solution import Solution
-from cellcolor.pictures.picture import Picture3D
 
 SURFACE = drawn("AABB AABB", {"A": [0], "B": [1]})
 
@@ -24,10 +22,6 @@ class Apart(Certificate):
     """Cells that have no color in common."""
 
     lonely: tuple[int, ...]
-
-    def shown(self, value: int, instance: Instance) -> Shown:
-        marks = (Mark("x", f"{value} of {len(instance.cells)} cells", self.lonely, ()),)
-        return Shown(marks, (), ("Each has colors of its own.",))
 
 
 def verify_apart(proof: Proof, certificate: Apart, value: int) -> None:
@@ -85,14 +79,6 @@ def test_without_kind_or_verifier_it_is_a_claim(monkeypatch: pytest.MonkeyPatch)
             monkeypatch.setitem(KINDS, name, kind)
         (verdict,) = cellcolor.check(SURFACE, solved(0, 0)).bounds
         assert verdict.outcome == "no certificate"
-
-
-@pytest.mark.usefixtures("toy")
-def test_a_new_kind_is_drawn() -> None:
-    picture = cellcolor.show(SURFACE, view="why", solution=solved(0, 1)).picture
-    assert isinstance(picture, Picture3D)
-    assert picture.notes == ("Each has colors of its own.",)
-    assert [name for name, _ in picture.legend] == ["2 of 2 cells"]
 
 
 def test_a_new_kind_is_on_the_page(toy: BoundKind) -> None:

@@ -7,6 +7,7 @@ import dh_arms
 import numpy as np
 import pytest
 from arm_plates import plate
+from dh_arms import LOCKED
 from independent import wrapped
 
 from cellcolor.arrays import Array
@@ -17,24 +18,15 @@ from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import BRANCHES, UrKinematics
-from cellcolor.frontend.setup import RobotFiles
 
 pytestmark = pytest.mark.slow
 
-LOCKED = 0.4
 ARMS = (("ur", "ur5e"), ("eaik", "ur5e"), ("eaik", "kr6"), ("eaik", "puma560"))
 
 
 def family(kinematics: str, text: str) -> tuple[Robot, InverseKinematics]:
     robot = dh_arms.robot(text)
-    files = RobotFiles(
-        arm_urdf="<",
-        flange_link="flange",
-        tool_urdf="<",
-        tip_link="tool_tip",
-        locked_joint_6_rad=LOCKED,
-    )
-    return robot, {"ur": UrKinematics, "eaik": EaikKinematics}[kinematics](robot, files)
+    return robot, {"ur": UrKinematics, "eaik": EaikKinematics}[kinematics](robot, LOCKED)
 
 
 def volumes(robot: Robot, q: Array) -> Array:
@@ -55,7 +47,7 @@ def test_no_solution_is_lost_and_all_are_exact(kinematics: str, name: str, scale
     reached = forward(robot, found[rows, branches])
     assert np.abs(reached.tip - poses.tip[rows]).max() < 1e-9
     assert np.abs(reached.tool_axis - poses.tool_axis[rows]).max() < 1e-9
-    assert (found[rows, branches, 5] == LOCKED).all()
+    assert (found[rows, branches, 5] == LOCKED.locked_joint_6_rad).all()
     # The configuration that the pose was made of is there if it passes the shipped setup's
     # threshold on conditioning, or a tenth of it for a usual calibration.
     near = np.where(np.isnan(found), np.inf, wrapped(found - q[:, None]))[:, :, :5].max(axis=2)

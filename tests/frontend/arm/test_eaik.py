@@ -7,6 +7,7 @@ import sys
 import dh_arms
 import numpy as np
 import pytest
+from dh_arms import LOCKED
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -15,23 +16,16 @@ from cellcolor.frontend.arm.eaik import EaikKinematics
 from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import BRANCHES
-from cellcolor.frontend.setup import RobotFiles
 from examples import examples
 
 pytestmark = pytest.mark.second
 
-LOCKED = 0.4
 NAMED = ("kr6", "irb120", "puma560", "ur5e")
 NAMELESS = ("passing", "cuspidal")
 
 
-def files(**keys: object) -> RobotFiles:
-    given = {"arm_urdf": "<", "flange_link": "flange", "tool_urdf": "<", "tip_link": "tool_tip"}
-    return RobotFiles(**(given | {"kinematics": "eaik", "locked_joint_6_rad": LOCKED} | keys))
-
-
 ROBOTS = {name: dh_arms.robot(dh_arms.urdf(name)) for name in (*NAMED, *NAMELESS)}
-FAMILIES = {name: EaikKinematics(robot, files()) for name, robot in ROBOTS.items()}
+FAMILIES = {name: EaikKinematics(robot, LOCKED) for name, robot in ROBOTS.items()}
 
 
 @given(
@@ -82,7 +76,7 @@ def test_branch_names_mean_what_they_say() -> None:
 
 def refused(robot: Robot, **keys: object) -> InputError:
     with pytest.raises(InputError) as caught:
-        EaikKinematics(robot, files(**keys))
+        EaikKinematics(robot, LOCKED.varied(**keys))
     assert "\n" not in str(caught.value)
     return caught.value
 

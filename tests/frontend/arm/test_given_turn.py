@@ -1,4 +1,4 @@
-"""Whole poses of the tool: rules for its turn, solutions, names and measures of conditioning."""
+"""Whole poses of the tool: rules for its turn, solutions and names."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import calibrated
 import numpy as np
 import pytest
 from bent_tools import ACROSS, BENT, STRAIGHT, tip_frame, tip_frames
+from dh_arms import FILES
 from hypothesis import given
 from hypothesis import strategies as st
 from independent import wrapped
@@ -16,19 +17,14 @@ from independent import wrapped
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.eaik import EaikKinematics
 from cellcolor.frontend.arm.inverse import InverseKinematics
-from cellcolor.frontend.arm.kinematics import (
-    forward,
-    task_determinant,
-    tip_jacobian,
-)
+from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
 from cellcolor.frontend.arm.robot import GIVEN_TURN, Robot
 from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at
 from cellcolor.frontend.arm.ur import UrKinematics
-from cellcolor.frontend.setup import RobotFiles, Turn
+from cellcolor.frontend.setup import Turn
 
 pytestmark = pytest.mark.second
 
-FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")
 FAMILIES: dict[str, type[InverseKinematics]] = {"ur": UrKinematics, "eaik": EaikKinematics}
 ARMS = [("ur", "ur5e"), ("eaik", "ur5e"), ("eaik", "kr6"), ("eaik", "puma560")]
 TOOLS = {"straight": STRAIGHT, "bent": BENT, "across": ACROSS}
@@ -118,12 +114,3 @@ def test_a_branch_keeps_its_name_where_the_determinant_is_not_zero(family: str, 
     clear = task_determinant(*tip_jacobian(poses), poses.tool_axis, GIVEN_TURN) > 0.01
     assert clear.sum() > 100
     assert (names[0] == names[1])[clear].all()
-
-
-# --- conditioning -------------------------------------------------------------------------------
-
-
-# --- the set of turns ---------------------------------------------------------------------------
-
-
-# --- refusals -----------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from assembled import load_robot
+from dh_arms import FILES, LOCKED
 from independent import wrapped
 from shipped import ROBOTS
 
@@ -24,12 +25,10 @@ from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.arm.urdf import parse_urdf
-from cellcolor.frontend.setup import RobotFiles, Turn
+from cellcolor.frontend.setup import Turn
 
 pytestmark = pytest.mark.second
 
-FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")
-LOCKED = FILES.varied(locked_joint_6_rad=0.4)
 OUT, BACK, TILTED = "0 0 0.4", f"{np.pi} 0 0.4", "0.3 0 0"
 UPPER, FORE, HAND = (0.3, 0, 0.2, 0), (0.25, 0, 0, 0), (0, 0, -0.1, 0)
 LINKS = {

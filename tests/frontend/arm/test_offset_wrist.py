@@ -6,6 +6,7 @@ import dh_arms
 import numpy as np
 import pytest
 from arm_plates import plate
+from dh_arms import LOCKED
 from independent import wrapped
 from shipped import ROBOTS
 
@@ -14,18 +15,8 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.eaik import EaikKinematics
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.offset_wrist import OffsetWrist
-from cellcolor.frontend.setup import RobotFiles
 
 pytestmark = pytest.mark.slow
-
-FILES = RobotFiles(
-    arm_urdf="<",
-    flange_link="flange",
-    tool_urdf="<",
-    tip_link="tool_tip",
-    kinematics="offset-wrist",
-    locked_joint_6_rad=0.4,
-)
 
 
 def test_a_spherical_wrist_is_solved_as_by_eaik() -> None:
@@ -33,8 +24,8 @@ def test_a_spherical_wrist_is_solved_as_by_eaik() -> None:
     robot = dh_arms.robot(dh_arms.urdf("irb120"))
     poses = forward(robot, np.random.default_rng(2).uniform(-np.pi, np.pi, (30, 6)))
     for ours, theirs in zip(
-        OffsetWrist(robot, FILES).solve(poses.tip, poses.tool_axis),
-        EaikKinematics(robot, FILES).solve(poses.tip, poses.tool_axis),
+        OffsetWrist(robot, LOCKED).solve(poses.tip, poses.tool_axis),
+        EaikKinematics(robot, LOCKED).solve(poses.tip, poses.tool_axis),
         strict=True,
     ):
         ours, theirs = (every[~np.isnan(every[:, 0])] for every in (ours, theirs))
@@ -44,7 +35,7 @@ def test_a_spherical_wrist_is_solved_as_by_eaik() -> None:
 
 def test_an_arm_whose_second_and_third_axes_are_not_parallel_is_refused() -> None:
     with pytest.raises(InputError, match="not parallel to that of joint 2") as caught:
-        OffsetWrist(dh_arms.robot(dh_arms.urdf("cuspidal")), FILES)
+        OffsetWrist(dh_arms.robot(dh_arms.urdf("cuspidal")), LOCKED)
     assert caught.value.field == "joint[j3]"
 
 

@@ -12,6 +12,7 @@ import pinocchio as pin
 import pytest
 from assembled import load_robot
 from bent_tools import BENT, tip_frame, tip_frames
+from dh_arms import FILES
 from hypothesis import given
 from hypothesis import strategies as st
 from independent import kinematics_apart, wrapped
@@ -24,9 +25,7 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, Scene, build_surface
 from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
-from cellcolor.frontend.arm.kinematics import (
-    forward,
-)
+from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.planar import PlanarThree, PlanarTwo, Scara, ScaraWithoutTurn
 from cellcolor.frontend.arm.robot import (
     FREE_IN_PLANE,
@@ -39,10 +38,9 @@ from cellcolor.frontend.arm.robot import (
 from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.setup import RobotFiles, Turn
+from cellcolor.frontend.setup import Turn
 from examples import examples
 
-FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")
 COBRA = TOP / "instances" / "planar" / "cobra600_pipe.toml"
 KR6 = TOP / "instances" / "planar" / "kr6_r700_z200_plate.toml"
 FLIP = np.diag([1.0, -1.0, -1.0])
@@ -304,7 +302,7 @@ class FreeTurn(Scara):
 def test_somebodys_own_family_with_a_prismatic_joint(
     monkeypatch: pytest.MonkeyPatch, family: type, fixed: Any, field: str, said: str
 ) -> None:
-    monkeypatch.setattr(KINEMATICS, "find", lambda _: family)
+    monkeypatch.setattr(KINEMATICS, "find", lambda *_: family)
     error = refused(COBRA, robot={"fixed_joints": fixed}, **FREED)
     assert error.field == field and re.search(said, error.message)
 

@@ -11,15 +11,12 @@ from solution_sets import JOINTS, KINDS, Arm, near_singular
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.eaik import EaikKinematics
 from cellcolor.frontend.arm.offset_wrist import OffsetWrist
-from cellcolor.frontend.setup import RobotFiles, Setup
+from cellcolor.frontend.setup import Setup
 
 pytestmark = pytest.mark.second
 
 SHIPPED = ("ur5", "ur3e", "ur5e", "ur10e", "ur16e", "ur5e_calibrated", "kr6", "irb120", "tx2_60")
 OTHERS = ("puma560", "passing", "cuspidal", *dh_arms.OFFSET_WRISTS)
-FILES = RobotFiles(
-    arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip", locked_joint_6_rad=0.4
-)
 
 
 def arm(name: str) -> Arm:
@@ -27,7 +24,7 @@ def arm(name: str) -> Arm:
         return Arm.of(Setup.read(ROBOTS / f"{name}_polishing.toml"))
     robot = dh_arms.robot(dh_arms.urdf(name))
     family = OffsetWrist if name in dh_arms.OFFSET_WRISTS else EaikKinematics
-    return Arm(robot, family(robot, FILES))
+    return Arm(robot, family(robot, dh_arms.LOCKED))
 
 
 def random_joints(count: int, seed: int) -> Array:

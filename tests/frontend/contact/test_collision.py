@@ -15,7 +15,7 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, pairs_of, pairs_with
 from cellcolor.frontend.parts.placement import Placement
-from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
+from cellcolor.frontend.parts.shapes import CapObject
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.scene import Ground
 
@@ -26,7 +26,11 @@ EXEMPT = ("base_link", "shoulder_link")
 @pytest.fixture(scope="module")
 def wok() -> Surface:
     place = Placement(position_m=(0.465, -0.15, -0.04))
-    return spherical_cap(0.2, 1.13, *disc_mesh(500, 0.15, 1)).placed(place)
+    return (
+        CapObject(radius_m=0.2, half_angle_rad=1.13, target_vertices=500, jitter=0.15, seed=1)
+        .surface()
+        .placed(place)
+    )
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +98,7 @@ def test_tool_body_is_flat_and_ends_above_the_tip(robot: Robot) -> None:
 def test_only_the_tip_touches(robot: Robot) -> None:
     # A plate 9 mm above the tip is free, one at 11 mm cuts the tool's body.
     poses = forward(robot, tool_down(-0.3))
-    plate = spherical_cap(5.0, 0.01, *disc_mesh(300, 0.0, 0))
+    plate = CapObject(radius_m=5.0, half_angle_rad=0.01, target_vertices=300).surface()
     for height, expected in ((0.009, False), (0.011, True)):
         vertices = plate.vertices - [0, 0, 5.0] + poses.tip[0] + [0, 0, height]
         assert hits(robot, mesh(plate, vertices), tool_down(-0.3))[0] == expected

@@ -23,7 +23,7 @@ from examples import examples
 def holds(robot: Robot, mesh: trimesh.Trimesh, points: Array) -> list[bool]:
     """Whether both engines find that tiny balls at points (k, 3) touch a mesh at the base."""
     vertices, faces = np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)
-    body, still = mesh_body("link", 0, Path("link.stl"), vertices, faces, "exact").body, (1, 6)
+    body, still = mesh_body("link", 0, Path("link.stl"), vertices, faces, "exact"), (1, 6)
     found = []
     for point in points:
         pairs: list[Pair] = [(body, Shape("sphere", (1e-9,), origin=point), 0.0)]

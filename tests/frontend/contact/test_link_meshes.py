@@ -18,7 +18,7 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, Pair, pairs_of, pairs_with
 from cellcolor.frontend.contact.obstacle import BoxObstacle, CylinderObstacle, SphereObstacle
-from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
+from cellcolor.frontend.parts.shapes import CapObject
 from cellcolor.frontend.scene import Ground
 from cellcolor.trajectory_checker.validity import touching
 
@@ -71,6 +71,8 @@ def test_verdicts_agree(meshed: Robot, tmp_path: Path, margin: float, count: int
     ground = Ground(height_m=GROUND).half_space
     free = [body for body in meshed.bodies if body.link not in EXEMPT]
     check(meshed, [(body, ground, margin) for body in free], joints)
-    cap = spherical_cap(0.3, 1.2, *disc_mesh(400, 0.2, 3))
+    cap = CapObject(
+        radius_m=0.3, half_angle_rad=1.2, target_vertices=400, jitter=0.2, seed=3
+    ).surface()
     shell = Shape("mesh", vertices=cap.vertices + np.array([0.45, 0.0, 0.1]), faces=cap.faces)
     check(meshed, pairs_with(meshed, [shell], margin), joints)

@@ -9,13 +9,13 @@ import pytest
 import trimesh
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.body import StandIn, mesh_body
+from cellcolor.frontend.arm.body import MeshBody, mesh_body
 from cellcolor.frontend.setup import MeshCollision
 
 pytestmark = pytest.mark.second
 
 
-def reported(mesh: trimesh.Trimesh, chosen: MeshCollision) -> StandIn:
+def reported(mesh: trimesh.Trimesh, chosen: MeshCollision) -> MeshBody:
     vertices, faces = np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)
     return mesh_body("link", 1, Path("folder/link.stl"), vertices, faces, chosen)
 

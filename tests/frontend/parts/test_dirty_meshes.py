@@ -14,7 +14,7 @@ from shipped import shipped
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.inspection import inspect_mesh
 from cellcolor.frontend.parts.mesh import mesh_surface
-from cellcolor.frontend.parts.mesh_file import load_mesh, read_mesh
+from cellcolor.frontend.parts.mesh_file import MeshObject, read_mesh
 from cellcolor.frontend.parts.repairing import repair_mesh
 from cellcolor.frontend.prepared import prepare
 
@@ -99,7 +99,7 @@ def test_as_stl(tmp_path: Path) -> None:
             repair_mesh(*mesh)
         assert str(caught.value.field).startswith("faces near (")
     with pytest.raises(InputError, match="T-vertex") as caught:
-        load_mesh(tmp_path / "needles.stl", 1.0, mend=True)
+        MeshObject(file=str(tmp_path / "needles.stl"), meters_per_unit=1.0, repair=True).surface()
     assert caught.value.file == str(tmp_path / "needles.stl")
     assert "\n" not in str(caught.value) and "faces near (" in str(caught.value)
 

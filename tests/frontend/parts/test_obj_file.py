@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.mesh_file import load_mesh, read_mesh, read_obj, triangulated
+from cellcolor.frontend.parts.mesh_file import MeshObject, read_mesh, read_obj, triangulated
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
@@ -38,7 +38,10 @@ def test_materials_objects_and_groups_are_one_mesh(tmp_path: Path) -> None:
         text += f"\nf {a}/{1 + number % 2}/1 {b}//1 {c}/2"
     (tmp_path / "box.obj").write_text(f"mtllib none.mtl\n{text}\n")
     (tmp_path / "plain.obj").write_text("\n".join(lines))
-    parted, plain = (load_mesh(tmp_path / name, 0.1) for name in ("box.obj", "plain.obj"))
+    parted, plain = (
+        MeshObject(file=str(tmp_path / name), meters_per_unit=0.1).surface()
+        for name in ("box.obj", "plain.obj")
+    )
     assert np.array_equal(parted.vertices, plain.vertices)
     assert np.array_equal(parted.faces, plain.faces)
 
@@ -155,7 +158,7 @@ def test_a_fold_is_named_by_a_face_of_the_file(tmp_path: Path) -> None:
     file = tmp_path / "fold.obj"
     file.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.1 1 0\nf 1 2 3\nf 2 1 4\n")
     with pytest.raises(InputError, match=r"no normal at \(0.5, 0, 0\) m") as caught:
-        load_mesh(file, 1.0, max_edge_m=0.6)
+        MeshObject(file=str(file), meters_per_unit=1.0, max_edge_m=0.6).surface()
     assert caught.value.field in ("faces[0]", "faces[1]")
 
 

@@ -14,14 +14,9 @@ from scipy.spatial.transform import Rotation
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.mesh_file import load_mesh
+from cellcolor.frontend.parts.mesh_file import MeshObject
 from cellcolor.frontend.parts.placement import Placement
-from cellcolor.frontend.parts.shapes import (
-    disc_mesh,
-    grid_mesh,
-    pipe,
-    spherical_cap,
-)
+from cellcolor.frontend.parts.shapes import CapObject, PipeObject, disc_mesh, grid_mesh
 from examples import examples
 
 
@@ -68,8 +63,8 @@ def test_grid_is_a_counter_clockwise_rectangle(
 
 
 def test_pipe() -> None:
-    grid = grid_mesh(0.083 * np.pi, 0.315, 2000, 0.15, 1)
-    half = pipe(0.083, np.pi, 0.315, *grid)
+    sizes = {"radius_m": 0.083, "length_m": 0.315, "arc_rad": np.pi}
+    half = PipeObject(**sizes, target_vertices=2000, jitter=0.15, seed=1).surface()
     assert np.allclose(np.hypot(half.vertices[:, 0], half.vertices[:, 2]), 0.083)
     assert half.vertices[:, 2].min() == pytest.approx(0, abs=1e-12)
     assert abs(half.vertices[:, 1]).max() == pytest.approx(0.315 / 2)
@@ -84,7 +79,9 @@ def test_pipe() -> None:
 
 @pytest.mark.parametrize("half_angle", [0.3, 1.134, np.pi / 2, 2.5])
 def test_cap(half_angle: float) -> None:
-    cap = spherical_cap(0.2, half_angle, *disc_mesh(2000, 0.15, 3))
+    cap = CapObject(
+        radius_m=0.2, half_angle_rad=half_angle, target_vertices=2000, jitter=0.15, seed=3
+    ).surface()
     assert np.allclose(np.linalg.norm(cap.vertices, axis=1), 0.2)
     assert np.allclose(cap.normals, cap.vertices / 0.2)
     assert np.arccos(cap.normals[:, 2]).max() == pytest.approx(half_angle)
@@ -97,7 +94,7 @@ def test_cap(half_angle: float) -> None:
 
 
 def test_placement_is_extrinsic_xyz() -> None:
-    cap = spherical_cap(0.2, 1.0, *disc_mesh(100, 0.1, 0))
+    cap = CapObject(radius_m=0.2, half_angle_rad=1.0, target_vertices=100, jitter=0.1).surface()
     place = Placement(position_m=(1.0, 2.0, 3.0), rpy_rad=(0.3, -0.5, 0.8))
     turn = Rotation.from_euler("xyz", [0.3, -0.5, 0.8])
     placed = cap.placed(place)
@@ -136,31 +133,31 @@ def test_bad_meshes_are_refused(
 ) -> None:
     file = write_obj(tmp_path / "bad.obj", vertices, faces)
     with pytest.raises(InputError, match=message) as caught:
-        load_mesh(file, 1.0)
+        MeshObject(file=str(file), meters_per_unit=1.0).surface()
     assert caught.value.file == str(file)
     assert re.match(element, caught.value.field or "")
 
 
 def test_unreadable_files(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no such mesh file"):
-        load_mesh(tmp_path / "none.stl", 1.0)
+        MeshObject(file=str(tmp_path / "none.stl"), meters_per_unit=1.0).surface()
     other = tmp_path / "mesh.step"
     other.write_text("x")
     with pytest.raises(InputError, match="not a mesh format"):
-        load_mesh(other, 1.0)
+        MeshObject(file=str(other), meters_per_unit=1.0).surface()
     broken = tmp_path / "broken.ply"
     broken.write_text("ply\nformat ascii 1.0\nelement vertex 3\n")
     with pytest.raises(InputError) as caught:
-        load_mesh(broken, 1.0)
+        MeshObject(file=str(broken), meters_per_unit=1.0).surface()
     assert caught.value.file == str(broken)
 
 
 @pytest.mark.parametrize("suffix", ["stl", "obj", "ply"])
 def test_mesh_files(tmp_path: Path, suffix: str) -> None:
-    cap = spherical_cap(200.0, 1.2, *disc_mesh(500, 0.1, 0))
+    cap = CapObject(radius_m=200.0, half_angle_rad=1.2, target_vertices=500, jitter=0.1).surface()
     file = tmp_path / f"cap.{suffix}"
     trimesh.Trimesh(cap.vertices, cap.faces, process=False).export(file)
-    read = load_mesh(file, 0.001)
+    read = MeshObject(file=str(file), meters_per_unit=0.001).surface()
     assert (len(read.vertices), len(read.faces)) == (len(cap.vertices), len(cap.faces))
     assert np.allclose(np.linalg.norm(read.vertices, axis=1), 0.2, atol=1e-6)
     # Normals from the faces point outward, near the sphere's own.

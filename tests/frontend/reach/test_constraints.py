@@ -14,7 +14,7 @@ from reasons import Reason
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.contact.obstacle import BoxObstacle, MeshObstacle
-from cellcolor.frontend.parts.mesh_file import load_mesh
+from cellcolor.frontend.parts.mesh_file import MeshObject
 from cellcolor.frontend.parts.shapes import RectangleObject
 from cellcolor.frontend.scene import Scene
 
@@ -79,7 +79,9 @@ def test_patch_and_collision_object_are_two_things(scene: Varied) -> None:
 
 def test_maximum_edge_length_of_a_scene_is_in_meters(tmp_path: Path) -> None:
     (tmp_path / "box.obj").write_text(obj(100 * BOX, OUTWARD))
-    surface = load_mesh(tmp_path / "box.obj", 0.001, max_edge_m=0.03)
+    surface = MeshObject(
+        file=str(tmp_path / "box.obj"), meters_per_unit=0.001, max_edge_m=0.03
+    ).surface()
     edges = surface.mesh.edges
     assert surface.lengths(edges).max() <= 0.03 and surface.vertices.max() == pytest.approx(0.1)
 
@@ -104,8 +106,8 @@ def test_repair_only_on_request(tmp_path: Path) -> None:
     file = tmp_path / "bad.obj"
     file.write_text(obj(vertices, faces))
     with pytest.raises(InputError):
-        load_mesh(file, 1.0)
-    mended = load_mesh(file, 1.0, mend=True)
+        MeshObject(file=str(file), meters_per_unit=1.0).surface()
+    mended = MeshObject(file=str(file), meters_per_unit=1.0, repair=True).surface()
     mesh = trimesh.Trimesh(mended.vertices, mended.faces, process=False)
     assert len(mended.vertices) == 8 and mesh.is_watertight
     assert mesh.volume == pytest.approx(1)

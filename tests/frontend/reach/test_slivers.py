@@ -11,7 +11,7 @@ from shipped import shipped
 from cellcolor.arrays import Array
 from cellcolor.decomposition import decompose
 from cellcolor.frontend import BuildResult, build_surface
-from cellcolor.frontend.parts.shapes import grid_mesh, rectangle
+from cellcolor.frontend.parts.shapes import RectangleObject
 from cellcolor.frontend.reach.continuity import Coloring, color_nodes
 from cellcolor.frontend.reach.slivers import SliverReport, _cells, clean
 from cellcolor.frontend.setup import Slivers
@@ -115,7 +115,9 @@ def test_like_looking_at_all_cells_again(
 ) -> None:
     """Many small cells, equal areas and cracks between them: the same cells in the same order."""
     rng = np.random.default_rng(seed)
-    surface = rectangle(1.0, 1.0, *grid_mesh(1.0, 1.0, vertices, 0.2, 0))
+    surface = RectangleObject(
+        size_x_m=1.0, size_y_m=1.0, target_vertices=vertices, jitter=0.2
+    ).surface()
     x, y = surface.vertices[:, :2].T
     waves = [np.sin(rng.uniform(2, 9) * x + rng.uniform(0, 9) * y + phase) for phase in range(4)]
     nodes = np.stack(waves, axis=1) + noisy * rng.standard_normal((len(x), 4)) > -0.3

@@ -11,8 +11,7 @@ from typing import Any
 import odd_jobs
 import pytest
 
-from cellcolor.lab.workers import Task, Workers, as_they_end
-from cellcolor.processes import Ended, run_alone
+from cellcolor.processes import Ended, Task, as_they_end, run_alone
 
 pytestmark = pytest.mark.second
 
@@ -72,14 +71,14 @@ class TestManyProcesses:
         jobs = [(odd_jobs.die, ()), (odd_jobs.double, (1,)), (odd_jobs.fail, ("!",))]
         tasks = [(n, Task(function, arguments, LONG)) for n, (function, arguments) in
                  enumerate(jobs)]  # fmt: skip
-        with Workers(1) as workers:
-            ends = [(name, ended.end) for name, ended in as_they_end(workers, tasks)]
+        ends = [(name, ended.end) for name, ended in as_they_end(1, tasks)]
         assert ends == [(0, "crashed"), (1, "done"), (2, "failed")]
 
     def test_leaving_ends_the_work(self, tmp_path: Path) -> None:
         pids = tmp_path / "pids"
-        with pytest.raises(KeyboardInterrupt), Workers(1) as workers:
-            workers.submit(Task(odd_jobs.hang, (str(pids),), 600.0))
-            odd_jobs.wait_until_noted(pids, 2)
-            raise KeyboardInterrupt
+        tasks = [Task(odd_jobs.double, (1,), LONG), Task(odd_jobs.hang, (str(pids),), 600.0)]
+        with pytest.raises(KeyboardInterrupt):
+            for _ in as_they_end(2, enumerate(tasks)):
+                odd_jobs.wait_until_noted(pids, 2)
+                raise KeyboardInterrupt
         odd_jobs.wait_until_ended(pids)
