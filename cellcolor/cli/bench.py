@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from cellcolor.lab.runs.sweep import Contestant, Specimen
 
 
-def _numbers(_context: click.Context, _option: click.Parameter, value: str) -> tuple[int, ...]:
+def _numbers(value: str) -> tuple[int, ...]:
     """Numbers and ranges of them, such as ``0-9`` or ``3,7,10-12``."""
     found: list[int] = []
     for part in value.split(","):
@@ -56,7 +56,7 @@ def bench() -> None:
     metavar="NAME[@WORKERS]",
     multiple=True,
 )
-@option("--seeds", str, "Of families.", default="0-9", show_default=True, callback=_numbers)
+@option("--seeds", _numbers, "Of families.  [default: 0-9]", default="0-9", metavar="N-M")
 @option(
     "--time-limit",
     Real(0, 1e6, min_open=True),

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from cellcolor.checker.certificates import BoundVerdict
 from cellcolor.checker.claimed_numbers import claims
@@ -269,9 +269,10 @@ def _check_trajectory(request: Request, claim: Path) -> Exit:
     from cellcolor.door.judging import judge_trajectory
 
     given = read_claim(claim, (Trajectory,))
-    with naming(name_of(request.claim)):
+    name = name_of(request.claim)
+    with naming(name):
         subject = request.opened(request.deadline)
-        with at_work(Path(request.claim), "judging") as report:
+        with at_work(Path(name), "judging") as report:
             verdict = judge_trajectory(subject, given, request.deadline, report)
     document = {"file": request.claim} | verdict.to_document()
     return _told(request, verdict, document, say_trajectory)
@@ -292,13 +293,7 @@ def _no_verdict(request: Request, why: InputError, code: Exit) -> Exit:
     """Say why there is no verdict: on standard error, and as JSON where that was asked for."""
     complain(why)
     if request.as_json:
-        error = CheckError(
-            file=request.claim,
-            valid=None,
-            error=str(why),
-            at_file=why.file,
-            at_field=why.field,
-            exit_code=3 if code is Exit.STOPPED else 2,
-        )
+        number: Literal[2, 3] = 3 if code is Exit.STOPPED else 2
+        error = CheckError(request.claim, None, str(why), why.file, why.field, number)
         print_json(error.to_document())
     return code

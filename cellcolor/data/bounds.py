@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import NonNegativeInt
 
 from cellcolor.data.value import Value
 from cellcolor.data.wording import count
-from cellcolor.files.validation import json_content, settle
+from cellcolor.files.validation import FreeContent
 
 Extent = Literal["surface", "strands"]
 """What a bound holds for: any division of the surface, or those with the solution's strands."""
@@ -35,13 +35,7 @@ class Bound(Value):
     kind: str
     value: NonNegativeInt
     holds_for: Extent
-    certificate: dict[str, Any] | None = field(default=None, hash=False)
-
-    def __post_init__(self) -> None:
-        settle(self)
-        if self.certificate is not None:
-            content = json_content(self.certificate, "certificate")
-            object.__setattr__(self, "certificate", content)
+    certificate: FreeContent | None = field(default=None, hash=False)
 
     def __str__(self) -> str:
         extent = "any division of the surface" if self.holds_for == "surface" else "these strands"

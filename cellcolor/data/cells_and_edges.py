@@ -12,7 +12,7 @@ from pydantic import NonNegativeFloat
 from cellcolor.data.value import Value
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import refuse
-from cellcolor.files.validation import settle
+from cellcolor.files.validation import Ascending
 
 OUTSIDE = -1
 """The index of everything that no configuration reaches, and of what lies beyond the mesh."""
@@ -30,13 +30,9 @@ class Cell(Value):
     """
 
     id: int
-    colors: tuple[int, ...]
+    colors: Ascending
     loops: tuple[tuple[int, ...], ...]
     area: NonNegativeFloat | None = None
-
-    def __post_init__(self) -> None:
-        settle(self)
-        object.__setattr__(self, "colors", tuple(sorted(self.colors)))
 
     def __str__(self) -> str:
         numbers = "color" if len(self.colors) == 1 else "colors"
@@ -63,13 +59,8 @@ class Edge(Value):
     id: int
     left: int
     right: int
-    colors: tuple[int, ...] | None = None
+    colors: Ascending | None = None
     length: NonNegativeFloat | None = None
-
-    def __post_init__(self) -> None:
-        settle(self)
-        if self.colors is not None:
-            object.__setattr__(self, "colors", tuple(sorted(self.colors)))
 
     def __str__(self) -> str:
         left, right = (

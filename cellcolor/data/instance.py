@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 from pydantic import NonNegativeInt
 
@@ -22,7 +21,7 @@ from cellcolor.data.value import Document, Drawn, Value
 from cellcolor.data.wording import count
 from cellcolor.errors import refuse
 from cellcolor.files.documents import sha256_of
-from cellcolor.files.validation import json_content, settle
+from cellcolor.files.validation import FreeContent, settle
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,15 +82,13 @@ class Instance(Document, Drawn):
     colors: tuple[str, ...]
     cells: tuple[Cell, ...]
     edges: tuple[Edge, ...]
-    meta: dict[str, Any] | None = field(default=None, hash=False)
+    meta: FreeContent | None = field(default=None, hash=False)
     surface: SurfaceReference | None = None
     known: KnownResults | None = None
     coverage: Coverage | None = None
 
     def __post_init__(self) -> None:
         settle(self)
-        if self.meta is not None:
-            object.__setattr__(self, "meta", json_content(self.meta, "meta"))
         refuse(faults_of_color_names(self.colors))
         check_graph(self.cells, self.edges, len(self.colors))
         refuse(

@@ -27,7 +27,7 @@ from cellcolor.data.value import (
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError, refuse
 from cellcolor.files.documents import sha256_of
-from cellcolor.files.validation import json_content, settle
+from cellcolor.files.validation import Ascending, FreeContent, settle
 from cellcolor.mesh.triangle_mesh import TriangleMesh, directed_edges
 
 _FARTHEST = 1e9  # m
@@ -47,13 +47,12 @@ class Crack(Value):
 
     i: int
     j: int
-    colors: tuple[int, ...]
+    colors: Ascending
 
     def __post_init__(self) -> None:
         settle(self)
-        ordered = (*sorted((self.i, self.j)), tuple(sorted(self.colors)))
-        for name, content in zip(("i", "j", "colors"), ordered, strict=True):
-            object.__setattr__(self, name, content)
+        for name, end in zip("ij", sorted((self.i, self.j)), strict=True):
+            object.__setattr__(self, name, end)
 
     def __str__(self) -> str:
         numbers = "color" if len(self.colors) == 1 else "colors"
@@ -108,19 +107,13 @@ class LabelledSurface(WithArrays, Document, Drawn):
     colors: tuple[str, ...]
     vertices: RowsOfThree
     faces: Triples
-    vertex_colors: tuple[tuple[int, ...], ...]
+    vertex_colors: tuple[Ascending, ...]
     cracks: tuple[Annotated[Crack, _InFile()], ...] = ()
-    meta: dict[str, Any] = field(default_factory=dict)
-    given_up: tuple[int, ...] = ()
+    meta: FreeContent = field(default_factory=dict)
+    given_up: Ascending = ()
 
     def __post_init__(self) -> None:
         settle(self)
-        for name, content in (
-            ("vertex_colors", tuple([tuple(sorted(colors)) for colors in self.vertex_colors])),
-            ("given_up", tuple(sorted(self.given_up))),
-            ("meta", json_content(self.meta, "meta")),
-        ):
-            object.__setattr__(self, name, content)
         bad = np.argwhere(np.abs(self.vertices) > _FARTHEST)
         if len(bad):
             message = f"is beyond {_FARTHEST:g} m: areas could not be computed"

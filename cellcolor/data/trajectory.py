@@ -16,7 +16,6 @@ from dataclasses import dataclass, field
 from io import StringIO
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -35,7 +34,7 @@ from cellcolor.data.value import (
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import read_text
-from cellcolor.files.validation import json_content, settle
+from cellcolor.files.validation import FreeContent, settle
 
 _ARRAYS = ("joints", "points", "normals", "contact", "segment")
 
@@ -142,11 +141,10 @@ class Trajectory(WithArrays, Document):
     extra_lift_offs: tuple[ExtraLiftOff, ...] = ()
     left_out: tuple[LeftOut, ...] = ()
     repeated: tuple[RepeatedStretch, ...] = ()
-    meta: dict[str, Any] = field(default_factory=dict)
+    meta: FreeContent = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         settle(self)
-        object.__setattr__(self, "meta", json_content(self.meta, "meta"))
         if not self.joints.size:
             empty = self.joints.reshape(0, len(self.joint_names))
             object.__setattr__(self, "joints", empty)

@@ -38,8 +38,7 @@ def arm_of(
     Raises:
         InputError: no family fits.
     """
-    from cellcolor.frontend.arm.assembly import settled
-    from cellcolor.frontend.arm.loading import weight_faults
+    from cellcolor.frontend.arm.loading import settled, weight_faults
     from cellcolor.frontend.arm.urdf import load_urdf
     from cellcolor.frontend.contact.engine import always_touching, pairs_of
     from cellcolor.frontend.reach.prepared_arm import prepare_arm
@@ -129,7 +128,7 @@ def mount_of(arm: Urdf, flange: str) -> tuple[list[float], list[float]]:
     Args:
         arm: with all joints fixed that stand still.
     """
-    from cellcolor.frontend.arm.assembly import last_axis
+    from cellcolor.frontend.arm.loading import last_axis
     from cellcolor.frontend.parts.placement import rpy_from_rotation
 
     (x, y, z), beside = last_axis(arm, flange)

@@ -7,10 +7,10 @@ import re
 from collections.abc import Sequence
 from dataclasses import fields
 from functools import cache
-from typing import Any, TypeVar, get_type_hints
+from typing import Annotated, Any, TypeVar, get_type_hints
 
 import numpy as np
-from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic import AfterValidator, ConfigDict, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from cellcolor.errors import InputError
@@ -72,16 +72,18 @@ def plain(content: Any) -> Any:
     return content
 
 
-def json_content(content: Any, member: str) -> Any:
-    """Free content as it comes back from JSON.
-
-    Raises:
-        InputError: JSON has no text for it.
-    """
+def _through_json(content: Any) -> Any:
     try:
         return json.loads(json.dumps(content, allow_nan=False))
     except (TypeError, ValueError, RecursionError) as error:
-        raise InputError(None, member, f"cannot be written as JSON: {error}") from error
+        raise ValueError(f"cannot be written as JSON: {error}") from error
+
+
+FreeContent = Annotated[dict[str, Any], AfterValidator(_through_json)]
+"""Whatever JSON has a text for, as it comes back from there."""
+
+Ascending = Annotated[tuple[int, ...], AfterValidator(lambda own: tuple(sorted(own)))]
+"""Integers whose order means nothing."""
 
 
 @cache

@@ -49,7 +49,8 @@ def cut(
     if first is None:
         after_whole = (is_cut.argmin(axis=1) + 1) % 3
         first = np.where(is_cut.sum(axis=1) == 2, after_whole, is_cut.argmax(axis=1))
-    names = _from(first, mesh.corners, middle)
+    order = (first[:, None] + np.arange(3)) % 3
+    names = np.hstack([np.take_along_axis(x, order, 1) for x in (mesh.corners, middle)])
     names = np.concatenate([names, names[:, [4, 0]]], axis=1)
     if points is not None:
         two = np.flatnonzero(is_cut.sum(axis=1) == 2)
@@ -85,12 +86,6 @@ def with_longest_sides(mesh: TriangleMesh, marked: Mask) -> Mask:
         if not len(missing):
             return marked
         marked[missing] = True
-
-
-def _from(first: Index, corners: Index, middle: Index) -> Index:
-    """Corners and new points (m, 6) of triangles turned so that a side of each comes first."""
-    order = (first[:, None] + np.arange(3)) % 3
-    return np.concatenate([np.take_along_axis(x, order, 1) for x in (corners, middle)], axis=1)
 
 
 def _pieces(names: Index) -> tuple[Index, Index]:

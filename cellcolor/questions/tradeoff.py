@@ -9,7 +9,7 @@ space ``paper``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import replace
 
 from ortools.sat.python import cp_model
@@ -17,10 +17,10 @@ from ortools.sat.python import cp_model
 from cellcolor.data.instance import Instance
 from cellcolor.data.shares import cell_weights
 from cellcolor.data.solution import Solution
-from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.deadline import OutOfTime
 from cellcolor.questions.answers import Front, FrontPoint
 from cellcolor.solvers import checked
-from cellcolor.solvers.bounds.cover import Region, color_regions
+from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.complete_model import least_left_out
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
@@ -45,19 +45,17 @@ def front_of(
     Raises:
         OutOfTime: the deadline came before any division of the whole was known.
     """
-    own, _ = cell_weights(instance)
-    whole, total = _integers(own), sum(own)
     report = progress or (lambda _: None)
     report("fewest segments")
-    solution = _solved(instance, options)
-    if solution.segments is None:
+    weight = sum(cell_weights(instance)[0])
+    asked = _Asked(instance, options)
+    if asked.fewest is None:
         if instance.nothing_to_cover:
-            return Front(instance, (), total)
+            return Front(instance, (), weight)
         raise OutOfTime
-    asked = _Asked(instance, whole, options, solution)
     points: list[FrontPoint] = []
     bounds: list[tuple[float, bool]] = []
-    for segments in range(1, solution.segments):
+    for segments in range(1, asked.fewest):
         report(f"the most of {segments} segments")
         try:
             point, at_most, holds_for_surface = asked.most_of(segments)
@@ -67,8 +65,8 @@ def front_of(
         if point is not None and (not points or point.covered_share > points[-1].covered_share):
             points.append(point)
     if not points or points[-1].covered_share < 1:  # all that has a weight
-        points.append(FrontPoint(solution.segments, 1.0, 1.0, (), solution))
-    return Front(instance, tuple(points), total, tuple(bounds))
+        points.append(FrontPoint(asked.fewest, 1.0, 1.0, (), asked.whole))
+    return Front(instance, tuple(points), weight, tuple(bounds))
 
 
 def few_that_cover(instance: Instance, share: float, options: Options) -> tuple[FrontPoint, int]:
@@ -85,44 +83,51 @@ def few_that_cover(instance: Instance, share: float, options: Options) -> tuple[
     Raises:
         OutOfTime: the deadline came before any division of the whole was known.
     """
-    whole = _integers(cell_weights(instance)[0])
-    solution = _solved(instance, options)
-    if solution.segments is None:
+    asked = _Asked(instance, options)
+    if asked.fewest is None:
         raise OutOfTime
-    regions, total = color_regions(instance), sum(whole)
-    best, least = FrontPoint(solution.segments, 1.0, 1.0, (), solution), None
-    for segments in range(1, solution.surface_lower_bound):
+    best, least = FrontPoint(asked.fewest, 1.0, 1.0, (), asked.whole), None
+    for segments in range(1, asked.whole.surface_lower_bound):
         if segments >= best.segments:
             break
-        cells, at_most = _most_covered(regions, whole, segments, options.deadline)
-        if at_most < share * total:
+        cells, at_most = asked.most_covered(segments)
+        if at_most < share * asked.total:
             continue
         least = segments if least is None else least
-        left_out = tuple(sorted(set(range(len(whole))) - set(cells)))
-        covered = sum(whole[cell] for cell in cells) / total
+        covered, left_out = asked.weight_of(cells) / asked.total, asked.without(cells)
         if covered < share or not left_out:
             continue
-        rest, _ = instance.without_cells(left_out)
-        part = _solved(rest, options)
+        part = asked.solved(instance.without_cells(left_out)[0])
         if part.segments is not None and part.segments < best.segments:
             best = FrontPoint(part.segments, covered, 1.0, left_out, part, False)
-    return best, solution.surface_lower_bound if least is None else least
+    return best, asked.whole.surface_lower_bound if least is None else least
 
 
 class _Asked:
-    """The question about one graph, and what its cells weigh."""
+    """The question about one graph, what its cells weigh, and a solution of all cells."""
 
-    def __init__(
-        self,
-        instance: Instance,
-        weights: Sequence[int],
-        options: Options,
-        whole: Solution,
-    ) -> None:
-        """``whole`` is a solution of all cells."""
-        self._instance, self._weights = instance, weights
-        self._options, self._whole = options, whole
+    def __init__(self, instance: Instance, options: Options) -> None:
+        self._instance, self._options = instance, options
+        weights, _ = cell_weights(instance)
+        whole = sum(weights)
+        self._weights = [round(weight / whole * _WHOLE) for weight in weights]
+        self.total = sum(self._weights)
+        self.whole = self.solved(instance)
+        self.fewest = self.whole.segments
         self._regions = color_regions(instance)
+
+    def solved(self, instance: Instance) -> Solution:
+        """A solution in half of the time that is left."""
+        options = replace(self._options, deadline=self._options.deadline.share(0.5))
+        return checked.solve(instance, options)
+
+    def without(self, cells: Collection[int]) -> tuple[int, ...]:
+        """All other cells, ascending."""
+        return tuple(cell for cell in range(len(self._weights)) if cell not in cells)
+
+    def weight_of(self, cells: Iterable[int]) -> int:
+        """What some cells weigh."""
+        return sum(self._weights[cell] for cell in cells)
 
     def most_of(self, segments: int) -> tuple[FrontPoint | None, float, bool]:
         """The most that a number of segments can cover.
@@ -134,91 +139,72 @@ class _Asked:
         Raises:
             OutOfTime: the deadline came before anything was known.
         """
-        deadline = self._options.deadline
-        cells, at_most = _most_covered(self._regions, self._weights, segments, deadline)
-        total = sum(self._weights)
-        if self._whole.surface_lower_bound > segments:
+        cells, at_most = self.most_covered(segments)
+        if self.whole.surface_lower_bound > segments:
             # Not everything: some cell is left out, and it is left out whole.
-            at_most = min(at_most, total - min(self._weights))
+            at_most = min(at_most, self.total - min(self._weights))
         found = self._covering(cells, segments)
         holds_for_surface = True
         if found is None or found[0] < at_most:
             paper = least_left_out(self._instance, self._weights, segments, self._options)
             if paper is not None:
-                other = self._covering(set(range(len(self._weights))) - paper[0], segments)
+                other = self._covering(self.without(paper[0]), segments)
                 found = max(filter(None, (found, other)), key=lambda one: one[0], default=None)
                 if paper[1] < at_most:
                     at_most, holds_for_surface = paper[1], False
-        share = at_most / total
+        share = at_most / self.total
         if found is None:
             return None, share, holds_for_surface
         weight, left_out, solution = found
-        point = FrontPoint(segments, weight / total, share, left_out, solution, holds_for_surface)
+        point = FrontPoint(
+            segments, weight / self.total, share, left_out, solution, holds_for_surface
+        )
         return point, share, holds_for_surface
 
     def _covering(
         self, cells: Collection[int], segments: int
     ) -> tuple[int, tuple[int, ...], Solution] | None:
         """A division of some cells into this many segments: weight, left-out cells, and itself."""
-        left_out = tuple(sorted(set(range(len(self._weights))) - set(cells)))
+        left_out = self.without(cells)
         if not left_out:  # the whole needs more
             return None
-        rest, _ = self._instance.without_cells(left_out)
-        solution = _solved(rest, self._options)
+        solution = self.solved(self._instance.without_cells(left_out)[0])
         if solution.segments is None or solution.segments > segments:
             return None
-        return sum(self._weights[cell] for cell in cells), left_out, solution
+        return self.weight_of(cells), left_out, solution
 
+    def most_covered(self, segments: int) -> tuple[Collection[int], int]:
+        """The cells that a few color regions cover, of the greatest weight.
 
-def _most_covered(
-    regions: Sequence[Region],
-    weights: Sequence[int],
-    segments: int,
-    deadline: Deadline,
-) -> tuple[Collection[int], int]:
-    """The cells that a few color regions cover, of the greatest weight.
+        Returns:
+            What they cover, all of it, and the weight that no choice exceeds.
 
-    Returns:
-        What they cover, all of it, and the weight that no choice exceeds.
-
-    Raises:
-        OutOfTime: the deadline came first.
-    """
-    segments = min(segments, len(regions))  # one region may need several
-    model = cp_model.CpModel()
-    chosen = [model.new_bool_var("") for _ in regions]
-    covering: list[list[cp_model.IntVar]] = [[] for _ in weights]
-    for literal, (_, cells) in zip(chosen, regions, strict=True):
-        for cell in cells:
-            covering[cell].append(literal)
-    model.add(sum(chosen) <= segments)
-    gains = []
-    for weight, literals in zip(weights, covering, strict=True):
-        covered = model.new_bool_var("")
-        model.add_bool_or([~covered, *literals])
-        gains.append(weight * covered)
-    model.maximize(sum(gains))
-    solver = make_cp_solver(deadline, 1, 0)
-    # As for set covers, the bound comes from the linear relaxation.
-    solver.parameters.linearization_level = 2
-    status, interrupt = solve_interruptibly(solver, model)
-    if interrupt is not None:
-        raise interrupt
-    if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-        raise OutOfTime
-    found: set[int] = set()
-    for literal, (_, cells) in zip(chosen, regions, strict=True):
-        if solver.value(literal):
-            found |= cells
-    weight = sum(weights[cell] for cell in found)
-    return found, max(weight, int(solver.best_objective_bound + 0.5))
-
-
-def _solved(instance: Instance, options: Options) -> Solution:
-    """A solution in half of the time that is left."""
-    return checked.solve(instance, replace(options, deadline=options.deadline.share(0.5)))
-
-
-def _integers(weights: Sequence[float]) -> list[int]:
-    whole = sum(weights)
-    return [round(weight / whole * _WHOLE) for weight in weights]
+        Raises:
+            OutOfTime: the deadline came first.
+        """
+        model = cp_model.CpModel()
+        chosen = [model.new_bool_var("") for _ in self._regions]
+        covering: list[list[cp_model.IntVar]] = [[] for _ in self._weights]
+        for literal, (_, cells) in zip(chosen, self._regions, strict=True):
+            for cell in cells:
+                covering[cell].append(literal)
+        model.add(sum(chosen) <= segments)
+        gains = []
+        for weight, literals in zip(self._weights, covering, strict=True):
+            covered = model.new_bool_var("")
+            model.add_bool_or([~covered, *literals])
+            gains.append(weight * covered)
+        model.maximize(sum(gains))
+        solver = make_cp_solver(self._options.deadline, 1, 0)
+        # As for set covers, the bound comes from the linear relaxation.
+        solver.parameters.linearization_level = 2
+        status, interrupt = solve_interruptibly(solver, model)
+        if interrupt is not None:
+            raise interrupt
+        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+            raise OutOfTime
+        found: set[int] = set()
+        for literal, (_, cells) in zip(chosen, self._regions, strict=True):
+            if solver.value(literal):
+                found |= cells
+        return found, max(self.weight_of(found), int(solver.best_objective_bound + 0.5))

@@ -146,7 +146,9 @@ class Robot:
             if frame.type == pin.FrameType.BODY and frame.parentJoint == 0
         ]
         if link is None:
-            joint = self.model.frames[self.model.getFrameId(self.joint_names[0])]
+            joint = self.model.frames[
+                self.model.getFrameId(self.joint_names[0], pin.FrameType.JOINT)
+            ]
             link = "base" if "base" in standing else self.model.frames[joint.parentFrame].name
         elif link not in standing:
             raise KeyError(link)

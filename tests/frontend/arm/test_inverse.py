@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
+import dh_arms
 import numpy as np
-import pytest
-from assembled import load_robot
 from hypothesis import given
 from hypothesis import strategies as st
 from independent import wrapped
-from shipped import ROBOTS
+from scipy.spatial.transform import Rotation
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.kinematics import forward
@@ -59,7 +56,7 @@ def test_branch_names_mean_what_they_say(robot: Robot, geometry: UrGeometry) -> 
         assert ((found[:, branch, 4] < 0) == ("wrist-flipped" in name)).all()
 
 
-def arm_with_frames(folder: Path, lengths: Array, signs: list[int], turns: list[float]) -> Robot:
+def arm_with_frames(lengths: Array, signs: list[int], turns: list[float]) -> Robot:
     """A UR-type arm whose joints turn in given senses and count from given zeros."""
     d1, a2, a3, d4, d5, d6 = lengths
     half = np.pi / 2
@@ -71,19 +68,14 @@ def arm_with_frames(folder: Path, lengths: Array, signs: list[int], turns: list[
         (0, -d5, 0, half),
         (0, d6, 0, -half),
     ]
-    joints = [
-        f'<link name="l{i}"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1"'
-        f' iyz="0" izz="1"/></inertial></link><joint name="j{i}" type="revolute">'
-        f'<parent link="l{i - 1}"/><child link="l{i}"/>'
-        f'<origin xyz="{x} {y} {z}" rpy="{roll} 0 {turn}"/><axis xyz="0 0 {sign}"/>'
-        f'<limit lower="-4" upper="4" velocity="1" effort="1"/></joint>'
-        for i, ((x, y, z, roll), sign, turn) in enumerate(
-            zip(origins, signs, [turns[0], 0, turns[1], turns[2], 0, 0], strict=True), 1
-        )
-    ]
-    file = folder / "arm.urdf"
-    file.write_text(f'<robot name="arm"><link name="l0"/>{"".join(joints)}</robot>')
-    return load_robot(file, "l6", ROBOTS / "polishing_tool.urdf", "tool_tip")
+    placements = np.tile(np.eye(4), (7, 1, 1))
+    counted = [turns[0], 0, turns[1], turns[2], 0, 0]
+    for place, (*xyz, roll), turn in zip(placements, origins, counted, strict=False):
+        place[:3, :3] = Rotation.from_euler("xyz", [roll, 0, turn]).as_matrix()
+        place[:3, 3] = xyz
+    before, *after = dh_arms.urdf_of(list(placements)).split('<axis xyz="0 0 1"/>')
+    axes = [f'<axis xyz="0 0 {sign}"/>' for sign in (*signs, 1)]
+    return dh_arms.robot("".join([before, *map("".join, zip(axes, after, strict=True))]))
 
 
 @given(
@@ -93,13 +85,12 @@ def arm_with_frames(folder: Path, lengths: Array, signs: list[int], turns: list[
 )
 @examples(12)
 def test_frames_of_another_urdf_do_not_matter(
-    tmp_path_factory: pytest.TempPathFactory, signs: list[int], turns: list[float], seed: int
+    signs: list[int], turns: list[float], seed: int
 ) -> None:
     random = np.random.default_rng(seed)
     lengths = random.uniform(0.05, 0.5, 6)
-    folder = tmp_path_factory.mktemp("arm")
-    plain = arm_with_frames(folder, lengths, [1] * 6, [0.0] * 3)
-    arm = arm_with_frames(folder, lengths, signs, turns)
+    plain = arm_with_frames(lengths, [1] * 6, [0.0] * 3)
+    arm = arm_with_frames(lengths, signs, turns)
     q = random.uniform(-np.pi, np.pi, (40, 6))
     poses = forward(arm, q)
     found = solve_inverse(ur_geometry(arm), poses.tip, poses.tool_axis, LOCKED)

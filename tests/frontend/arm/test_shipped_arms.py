@@ -14,8 +14,8 @@ from pinocchio_reading import readable
 from shipped import ROBOTS
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.assembly import pinocchio_model
 from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.loading import pinocchio_model
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.urdf import load_urdf
 from cellcolor.frontend.contact.engine import Contacts, pairs_of
