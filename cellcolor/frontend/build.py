@@ -24,8 +24,7 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.links import continuous_along, valid_along
 from cellcolor.frontend.parts.surface import MOST_VERTICES
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.frontend.reach.continuity import Coloring, color_nodes
-from cellcolor.frontend.reach.limit_colors import LimitColors, limit_colors
+from cellcolor.frontend.reach.colors import Coloring, LimitColors, color_nodes, limit_colors
 from cellcolor.frontend.reach.slivers import SliverReport, clean
 from cellcolor.frontend.reach.validity_tests import Verdicts
 from cellcolor.frontend.report import BuildReport, report_on

@@ -20,7 +20,7 @@ from cellcolor.data.wording import count
 from cellcolor.frontend.parts.cover import spread
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.reach.limit_colors import LimitColors
+from cellcolor.frontend.reach.colors import LimitColors
 from cellcolor.frontend.reach.slivers import SliverReport
 from cellcolor.frontend.reach.validity_tests import STANDARD_TESTS
 from cellcolor.mesh.triangle_mesh import TriangleMesh
