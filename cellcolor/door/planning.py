@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import pi
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cellcolor.data.wording import check_share, listed
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
-from cellcolor.door.asking import explain, tradeoff
+from cellcolor.door.asking import explain, place, tradeoff
 from cellcolor.door.installed import require_motion
 from cellcolor.door.planned import (
     NothingCovered,
@@ -34,8 +35,11 @@ if TYPE_CHECKING:
 
 _NEEDED = ("pinocchio", "fcl", "igl", "trimesh", "scipy", "potpourri3d")
 _FOR_SOLVING = 0.5  # share of the time left then; a proof can take any time
-_QUESTIONS = ("tradeoff", "explain")  # that a plan's page can answer besides
+_QUESTIONS = ("tradeoff", "explain", "place", "setups")  # that a plan's page can answer besides
+_MOVED = 0.1  # m; how far the question ``place`` moves the part along x and y
+_PLACEMENTS = 32  # that the question ``place`` tries
 _DIVISIONS = 3  # tried at most: another if the arm finds no way to some color
+_FOR_BUILDING = 0.6  # share of the time left then, for the question ``setups``
 
 
 def plan(
@@ -58,8 +62,9 @@ def plan(
         pattern: of the tool paths, as for ``cover``; None for the usual one.
         cover, left_alone: what has to be covered, as for ``solve``; the judge does not
             ask for what is left out.
-        ask: what the page is to tell besides, of ``tradeoff`` and ``explain``, asked of the whole
-            scene in the time that is left.
+        ask: what the page is to tell besides, of ``tradeoff``, ``explain``, ``place`` and
+            ``setups``; it is asked of the whole scene in the time that is left. ``place`` moves the
+            part by up to 10 cm along x and y, ``setups`` turns it by quarter turns.
         time_limit: seconds for all of it, None for as long as it takes.
         progress: told the name of each stage as it begins.
         **motion: keys of the setup's table ``[motion]``, which they replace, such as
@@ -273,11 +278,23 @@ def _answered(
 ) -> tuple[AnsweredScene, tuple[str, ...]]:
     """The answers to the questions asked of a built scene, and why others have none or a part."""
     from cellcolor.pictures.report_page.content import AnsweredScene
+    from cellcolor.questions.setting_up import candidates_of, plan_of
 
+    scene = subject.build().scene
+    (x, y, z), (roll, pitch, yaw) = scene.placement.position_m, scene.placement.rpy_rad
+    around: dict[str, Any] = {"x": (x - _MOVED, x + _MOVED), "y": (y - _MOVED, y + _MOVED)}
+    turned = [(x, y, z, roll, pitch, yaw + turns * pi / 2) for turns in (1, 2, 3)]
     given: dict[str, Any] = {"time_limit": deadline, "progress": progress}
+
+    def set_ups() -> Answers:
+        found = candidates_of([scene], turned, deadline.share(_FOR_BUILDING), progress)
+        return plan_of(found, 1.0, None, Options(deadline=deadline), progress)
+
     ways: dict[str, Callable[[], Answers]] = {
         "tradeoff": lambda: tradeoff(subject, **given),
-        "explain": lambda: explain(subject.build().scene, **given),
+        "explain": lambda: explain(scene, **given),
+        "place": lambda: place(scene, **around, points=_PLACEMENTS, **given),
+        "setups": set_ups,
     }
     answers: list[Answers] = []
     unanswered: list[str] = []

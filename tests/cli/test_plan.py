@@ -36,6 +36,7 @@ from cellcolor.errors import InputError
 from cellcolor.exports.registry import EXPORTS
 from cellcolor.frontend.scene import Scene
 from cellcolor.questions.answers import Explanation, RelaxedMinimum
+from cellcolor.questions.placements import PlacedMinimum, Placements
 
 OTHER_ARMS = {name for name in KINDS if name.endswith((".mod", ".src", ".ls"))}
 Capture = pytest.CaptureFixture[str]
@@ -275,23 +276,26 @@ def test_a_question_without_an_answer_is_said_with_the_reason(
         monkeypatch.setattr(cellcolor.door.planning, name, answer)
 
     minimum = RelaxedMinimum((), (), 2, 2, 1.0, 1.0, True)
+    here = PlacedMinimum((0.5, 0, 0, 0, 0, 0), 2, 1.0, True, 200)
     question("tradeoff", OutOfTime("the time limit came first"))
     question("explain", Explanation("wok", minimum, (), complete=False))
-    options = ["--ask", "explain", "--ask", "tradeoff"]
+    question("place", Placements("wok", 1.0, here, (), ()))
+    options = ["--ask", "place", "--ask", "tradeoff", "--ask", "explain"]
     assert run("plan", scene, "-o", tmp_path / "a", *options) == 3
-    assert asked == ["tradeoff", "explain"]
+    assert asked == ["tradeoff", "explain", "place"]
     said, page = capsys.readouterr().out, (tmp_path / "a" / "report.html").read_text("utf-8")
     for line in (
         "tradeoff: not answered, the time limit came first",
         "explain: answered in part, the time limit came first",
     ):
         assert line in said.splitlines() and line in page
+    assert "place: not" not in said
     question("tradeoff", cellcolor.tradeoff(stand_in().built))
     assert run("plan", scene, "-o", tmp_path / "b", "--ask", "tradeoff") == 0
     # A question that cannot be asked does not cost the plan.
-    question("explain", InputError(None, "x", "nothing can be relaxed"))
-    assert run("plan", scene, "-o", tmp_path / "c", "--ask", "explain") == 3
-    assert "explain: not answered: x: nothing can be relaxed" in capsys.readouterr().out
+    question("place", InputError(None, "x", "the range is empty"))
+    assert run("plan", scene, "-o", tmp_path / "c", "--ask", "place") == 3
+    assert "place: not answered: x: the range is empty" in capsys.readouterr().out
     assert (tmp_path / "c" / "trajectory.json").exists()
 
 
@@ -299,8 +303,8 @@ def test_questions_after_a_plan_that_is_not_ready_are_said(
     scene: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cellcolor.motion.plan, "plan_motion", out_of_time(laid=False))
-    assert run("plan", scene, "-o", tmp_path / "a", "--ask", "explain") == 3
-    line = "explain: not asked, the time limit came first"
+    assert run("plan", scene, "-o", tmp_path / "a", "--ask", "place") == 3
+    line = "place: not asked, the time limit came first"
     assert line in capsys.readouterr().err
     assert line in (tmp_path / "a" / "report.html").read_text("utf-8")
 

@@ -9,7 +9,9 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count, listed
 from cellcolor.pictures.report_page.content import Answers, Card, MotionReport
-from cellcolor.questions.answers import Front
+from cellcolor.questions.answers import Explanation, Front
+from cellcolor.questions.placements import Placements
+from cellcolor.questions.set_ups import SetUpPlan
 
 _SHOWN = 12  # faults
 
@@ -311,10 +313,19 @@ def _left_out(report: MotionReport) -> Card | None:
     return Card("Left out", (text,), (head, *rows))
 
 
+_ANSWERS: dict[type[Answers], str] = {
+    Front: "Lift-offs against area",
+    Explanation: "What costs a lift-off",
+    Placements: "Where the part could stand",
+    SetUpPlan: "Several set-ups",
+}
+
+
 def _answer(answer: Answers) -> Card:
     """What the command prints; of a front a table, whose rows show what they cover."""
+    title = _ANSWERS[type(answer)]
     if not isinstance(answer, Front):
-        return Card("What costs a lift-off", tuple(str(answer).splitlines()))
+        return Card(title, tuple(str(answer).splitlines()))
     texts = [
         "The most that each number of lift-offs can cover, of the area with a color. A click on a "
         "row shows it on the part."
@@ -326,8 +337,7 @@ def _answer(answer: Answers) -> Card:
         for point in answer
     ]
     modes = tuple(point.in_short for point in answer)
-    head = ("lift-offs", "covered", "proof")
-    return Card("Lift-offs against area", tuple(texts), (head, *rows), modes=modes)
+    return Card(title, tuple(texts), (("lift-offs", "covered", "proof"), *rows), modes=modes)
 
 
 def _place(place: tuple[float, float, float]) -> str:

@@ -13,6 +13,8 @@ from cellcolor.decomposition import Decomposition
 from cellcolor.frontend import BuildResult
 from cellcolor.painting.paint import Painted
 from cellcolor.questions.answers import Explanation, Front
+from cellcolor.questions.placements import Placements
+from cellcolor.questions.set_ups import SetUpPlan
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,7 @@ class Card:
     times: tuple[float | None, ...] = ()
 
 
-Answers = Front | Explanation
+Answers = Front | Explanation | Placements | SetUpPlan
 """What a page can tell besides the plan."""
 
 
