@@ -110,7 +110,7 @@ def repair(part: Path, output: Path, as_json: bool, **wanted: Any) -> Exit:
 @output_option("FOLDER", "Folder for the files; it is created if it does not exist.", required=True)
 @keywords(tool=PATH, tip_link=str)
 @_UNIT
-@keywords(flip=bool, cover=click.Choice(["largest", "all"]))
+@keywords(outside=click.Choice(["toward", "away", "flip"]), cover=click.Choice(["largest", "all"]))
 @option(
     "--fix",
     _fixed,

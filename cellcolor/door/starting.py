@@ -18,7 +18,7 @@ from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.installed import require_motion
 from cellcolor.door.parts import inspect
 from cellcolor.door.starting_arm import arm_of
-from cellcolor.door.starting_part import VERTICES, CoverChoice, part_keys_of
+from cellcolor.door.starting_part import VERTICES, CoverChoice, Outside, part_keys_of
 from cellcolor.door.starting_place import best_place, home_over
 from cellcolor.door.starting_texts import MARK, SCENE, SETUP, TOOL
 from cellcolor.errors import naming, system_errors
@@ -64,7 +64,7 @@ def new(
     tool: str | PathLike[str] | None = None,
     tip_link: str = "tip",
     unit: str | None = None,
-    flip: bool = False,
+    outside: Outside | None = None,
     cover: CoverChoice | None = None,
     fix: Mapping[str, float] | None = None,
     time_limit: TimeLimit = None,
@@ -84,8 +84,8 @@ def new(
         tool: a URDF of the tool; None for a polisher of 100 mm, whose URDF is written as well.
         tip_link: of the tool.
         unit: ``m``, ``mm``, ``cm`` or ``in``, of the mesh; None for the likely one.
-        flip: covers the other side of an open part than its faces have, or of a shell the other
-            one than is usual.
+        outside: of an open part, the side that faces ``toward`` the robot or ``away`` from it, or
+            ``flip``, the other one than its faces have; of a shell, the side that is covered.
         cover: the ``largest`` piece between sharp edges, or ``all``; None for one side of a shell,
             all of other parts.
         fix: positions of joints that stand still, rad, or m of prismatic ones.
@@ -113,7 +113,7 @@ def new(
     setup_keys, prepared = arm_of(urdf, given, tip_link, place, fix or {})
     tell("the part")
     looked = inspect(mesh, unit=unit, time_limit=deadline)
-    part_keys, side = part_keys_of(mesh, place, looked, flip, cover)
+    part_keys, side = part_keys_of(mesh, place, looked, outside, cover)
     tell("where the part can stand")
     table = tomllib.loads(Template(SCENE).substitute(part_keys, position="[0.0, 0.0, 0.0]"))
     table["object"]["file"] = str(mesh.resolve())

@@ -50,7 +50,7 @@ def test_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert json.loads(capsys.readouterr().out)["high_m"] == pytest.approx([2.54, 1.27, 0.762])
     for unit, meters in (("cm", "0.01"), ("in", "0.0254"), ("mm", "0.001"), ("m", "1.0")):
         looked = replace(cellcolor.inspect(file, unit=unit), refusal_after_repair=None)
-        assert part_keys_of(file, tmp_path, looked, False, None)[0]["meters_per_unit"] == meters
+        assert part_keys_of(file, tmp_path, looked, None, None)[0]["meters_per_unit"] == meters
 
 
 def test_a_repaired_mesh_is_one_that_scenes_take(

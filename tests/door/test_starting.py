@@ -210,7 +210,12 @@ def new(capsys: Capture, part: Path, arm: Path, folder: Path, *options: str) -> 
 
 @pytest.mark.parametrize(
     ("options", "flipped", "faces"),
-    first_is_quick((("--flip",), True, "up"), ((), False, "down")),
+    first_is_quick(
+        (("--outside", "flip"), True, "up"),
+        ((), False, "down"),
+        (("--outside", "toward"), True, "up"),
+        (("--outside", "away"), False, "down"),
+    ),
 )
 def test_a_sheet_wound_inside_out(
     options: tuple[str, ...],
@@ -264,7 +269,7 @@ def shell(folder: Path) -> Path:
 
 @pytest.mark.parametrize(
     ("options", "side"),
-    first_is_quick(((), "up"), (("--flip",), "down"), (("--cover", "all"), "both")),
+    first_is_quick(((), "up"), (("--outside", "away"), "down"), (("--cover", "all"), "both")),
 )
 def test_one_side_of_a_shell(
     options: tuple[str, ...], side: str, tmp_path: Path, capsys: Capture
@@ -302,8 +307,8 @@ def test_a_closed_part_has_its_outside(tmp_path: Path, capsys: Capture) -> None:
     trimesh.creation.icosphere(2, 100).export(tmp_path / "ball.stl")
     arm = ROBOTS / "ur5.urdf"
     folder = tmp_path / "new"
-    assert run("new", tmp_path / "ball.stl", arm, "-o", folder, "--flip") == 2
-    assert "--flip: the part is closed" in capsys.readouterr().err
+    assert run("new", tmp_path / "ball.stl", arm, "-o", folder, "--outside", "flip") == 2
+    assert "--outside: the part is closed" in capsys.readouterr().err
     assert not folder.exists()
 
 
