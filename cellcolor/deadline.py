@@ -24,16 +24,9 @@ class Deadline:
 
     Attributes:
         moment: on the clock of ``time.monotonic``, in seconds; infinity if there is none.
-
-    Raises:
-        InputError: it is not a number.
     """
 
     moment: float = math.inf
-
-    def __post_init__(self) -> None:
-        if math.isnan(self.moment):
-            raise InputError(None, "time_limit", "is not a number of seconds")
 
     @classmethod
     def after(cls, seconds: float | None) -> Deadline:

@@ -58,13 +58,19 @@ class Interrupts:
         self.seen = False
 
     @contextmanager
-    def end_the_command(self) -> Iterator[None]:
-        """Turn signals into :class:`Stopped`, and forget those of earlier commands."""
+    def turned_into(self, kind: type[KeyboardInterrupt]) -> Iterator[None]:
+        """Raise this where a signal comes."""
 
         def handle(_number: int, _frame: FrameType | None) -> None:
             self.seen = True
-            raise Stopped
+            raise kind
 
+        with handled_by(handle):
+            yield
+
+    @contextmanager
+    def end_the_command(self) -> Iterator[None]:
+        """Turn signals into :class:`Stopped`, and forget those of earlier commands."""
         self.seen = False
         # Where nothing can be raised (a finalizer), Python reports what was: not worth a line.
         report = sys.unraisablehook
@@ -75,7 +81,7 @@ class Interrupts:
 
         sys.unraisablehook = quiet
         try:
-            with handled_by(handle):
+            with self.turned_into(Stopped):
                 yield
         finally:
             sys.unraisablehook = report

@@ -44,7 +44,7 @@ _SAID = (
 _JOINTS = Numbers("must be numbers N,N,…")
 
 
-@cellcolor.command(of=("door.painting:paint",))
+@cellcolor.command()
 @click.argument("source", metavar="FILE", type=INPUT)
 @click.argument("claim", metavar="SOLUTION.json", type=PATH)
 @output_option(
@@ -52,9 +52,8 @@ _JOINTS = Numbers("must be numbers N,N,…")
     "The painted surface; its plan is written beside it as OUT.plan.json.",
     required=True,
 )
-@option("--tool-radius", LENGTH, to="tool_radius_m")
 @TIME_LIMIT
-def paint(source: Path, claim: Path, output: Path, time_limit: Deadline, **wanted: float) -> Exit:
+def paint(source: Path, claim: Path, output: Path, time_limit: Deadline) -> Exit:
     """Paint every vertex of a surface in the colors of a solution.
 
     FILE is a labelled surface, a scene, or an instance that names its surface. Where a cell is
@@ -73,7 +72,7 @@ def paint(source: Path, claim: Path, output: Path, time_limit: Deadline, **wante
         inputs.append(subject.surface_path)
     check_painted(output, inputs)
     with at_work(source, "painting"), naming(claim):
-        painted = painted_of(subject, solution, time_limit=time_limit, **wanted)
+        painted = painted_of(subject, solution, time_limit=time_limit)
     write([Output.of(plan_path, painted.plan), Output.of(output, painted.surface)], inputs)
     added = len(painted.surface.vertices) - len(subject.surface.vertices)
     refined = f", {count(added, 'vertex', 'vertices')} added" if added else ""

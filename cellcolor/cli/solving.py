@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import click
@@ -31,7 +29,6 @@ from cellcolor.files.writing import (
     kind_of_format,
     write,
 )
-from cellcolor.signals import handled_by
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.registry import solver_names
 
@@ -40,18 +37,6 @@ _SOLUTION = kind_of_format(Solution.FORMAT)
 
 class Interrupted(OutOfTime, KeyboardInterrupt):
     """A signal that a solver takes for the time limit; it hands over the best it has."""
-
-
-@contextmanager
-def end_the_search() -> Iterator[None]:
-    """Turn signals into :class:`Interrupted` for a while."""
-
-    def handle(_number: int, _frame: FrameType | None) -> None:
-        INTERRUPTS.seen = True
-        raise Interrupted("interrupted")
-
-    with handled_by(handle):
-        yield
 
 
 def solve_files(
@@ -173,7 +158,7 @@ def _solve(
 
     if most is not None:
         check_able_to_list(search["solver"], instance)
-    with line_of(file, "solving") as show, end_the_search():
+    with line_of(file, "solving") as show, INTERRUPTS.turned_into(Interrupted):
 
         def progress(segments: int | None, bound: int) -> None:
             best = "no division yet" if segments is None else f"best {segments}"
@@ -211,7 +196,7 @@ def _with_schemes(
     if INTERRUPTS.seen:
         return replace(result, solution=replace(result.solution, schemes=0, complete=False)), []
     lines: list[str] = []
-    with line_of(file, "looking for schemes") as show, end_the_search():
+    with line_of(file, "looking for schemes") as show, INTERRUPTS.turned_into(Interrupted):
 
         def take(division: Division) -> None:
             lines.append(scheme_line(division))

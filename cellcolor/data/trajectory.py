@@ -75,6 +75,11 @@ class LeftOut(Value):
     reason: str
     place: tuple[float, float, float]
 
+    def __str__(self) -> str:
+        place = ", ".join(f"{value:.3f}" for value in self.place)
+        area = f"{self.area_m2 * 1e6:.1f} mm²"
+        return f"{area} of segment {self.segment} at ({place}): {self.reason}"
+
 
 @dataclass(frozen=True, slots=True)
 class RepeatedStretch(Value):

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
-from cellcolor.data.value import Count, Document, Value, every_member_of
+from cellcolor.data.value import AboutAFile, Count, Value
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
 from cellcolor.files.validation import settle
@@ -169,7 +169,7 @@ class StrokeFeed(Value):
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class TrajectoryVerdict(Document):
+class TrajectoryVerdict(AboutAFile):
     """What an independent judge finds in a trajectory.
 
     Attributes:
@@ -232,9 +232,3 @@ class TrajectoryVerdict(Document):
         faults = count(sum(self.fault_counts.values()), "fault")
         said = "valid" if self.valid else f"not valid, {faults}"
         return f"{self.name}: {said}, {count(self.lift_offs, 'lift-off')}"
-
-    def to_document(self) -> dict[str, Any]:
-        members = every_member_of(self)
-        file = members.pop("file")
-        found = {"format": self.FORMAT, "version": 1} | members
-        return found if file is None else {"file": file} | found

@@ -134,14 +134,16 @@ def read_one_of(path: str | PathLike[str], kinds: Collection[type[Document]]) ->
 
 
 class AboutAFile(Document):
-    """What is said about a file, whose name is in ``file``."""
+    """What is said about a file, whose name is in ``file``; None where it is not named."""
 
     __slots__ = ()
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object, the file's name first."""
-        head = {"file": None, "format": self.FORMAT, "version": 1}
-        return head | every_member_of(self)
+        members = every_member_of(self)
+        file = members.pop("file")
+        head = {} if file is None else {"file": file}
+        return head | {"format": self.FORMAT, "version": 1} | members
 
 
 def members_of(value: Any, always: Collection[str] = ()) -> dict[str, Any]:

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from functools import partial
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Unpack
 
-from cellcolor.deadline import Deadline
 from cellcolor.door.asked import SearchAndTell, Work, begun, options_of
 from cellcolor.door.drawing import kind_of_picture
 from cellcolor.door.installed import extras_for
 from cellcolor.door.subject import Solvable, open_subject, scene_of
-from cellcolor.errors import CellcolorError, InputError
+from cellcolor.errors import InputError
 from cellcolor.files.writing import Output, path_of, write
-from cellcolor.processes import Task, as_they_end
 from cellcolor.questions.answers import Front
-from cellcolor.questions.placements import PlacedMinimum, PlacementQuestion, Placements, Pose
+from cellcolor.questions.placements import PlacementQuestion, Placements
 from cellcolor.questions.places import Place
 
 if TYPE_CHECKING:
@@ -80,12 +76,6 @@ def explain(
     return explained(prepare(own, options.deadline), options, search.get("progress"))
 
 
-_BATCH = 32  # placements per task; reading the scene takes as long as one or two of them
-_ATTEMPTS = 2  # how often a task is tried whose process was lost
-_ENDING = 10.0  # s that a process may take beyond its time
-_ALL_DAY = 86_400.0  # s, the limit of a process if there is no time limit
-
-
 def place(
     scene: str | PathLike[str] | Scene,
     *,
@@ -115,48 +105,7 @@ def place(
         raise InputError(None, "jobs", f"must be 1 or more, is {jobs}")
     from cellcolor.questions.searching_places import search_places
 
-    minima = partial(_minima, jobs, asked, deadline)
-    return search_places(own, asked, minima, deadline, report)
-
-
-def _minima(
-    jobs: int,
-    question: PlacementQuestion,
-    deadline: Deadline,
-    scene: Scene,
-    poses: Sequence[Pose],
-    cover: float | None,
-) -> Iterator[list[PlacedMinimum]]:
-    """The minima of placements in the order in which they are done, some at a time.
-
-    Args:
-        jobs: processes at a time; this one does what there is one of.
-        cover: as of :data:`~cellcolor.questions.searching_places.Minima`.
-
-    Raises:
-        CellcolorError: a task failed, or its process was lost in every attempt.
-    """
-    from cellcolor.questions.placing import minima_at
-
-    how = 1, question.seed, question.base, cover
-    size = min(_BATCH, -(-len(poses) // jobs) or 1)
-    lost = [poses[at : at + size] for at in range(0, len(poses), size)]
-    if 1 in (jobs, len(poses)):
-        for part in lost:
-            yield minima_at(scene, part, deadline.left, *how)
-        return
-    for attempt in range(1, _ATTEMPTS + 1):
-        left = deadline.left
-        most = min(left, _ALL_DAY) + _ENDING
-        tasks = [(part, Task(minima_at, (scene, part, left, *how), most)) for part in lost]
-        lost = []
-        for part, ended in as_they_end(jobs, tasks):
-            if ended.end in ("done", "timeout", "stopped"):
-                yield ended.value or []
-            elif ended.end == "failed" or attempt == _ATTEMPTS:
-                raise CellcolorError(f"placements could not be tried: {ended.error}")
-            else:  # the process was lost; the work is repeated
-                lost.append(part)
+    return search_places(own, asked, jobs, deadline, report)
 
 
 def save_map(found: Placements, path: str | PathLike[str]) -> None:

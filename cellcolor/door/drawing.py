@@ -201,7 +201,7 @@ def draw(picture: Picture, subject: Subject, options: Mapping[str, Any]) -> Draw
 
     @cache
     def checked() -> tuple[Solution, tuple[BoundVerdict, ...]]:
-        return _checked(subject, given["solution"], on_surface="verdicts" in picture.needs)
+        return _checked(subject, given["solution"])
 
     make: dict[str, Callable[[], object]] = {
         "build": subject.build,
@@ -237,15 +237,13 @@ def _number(names: tuple[str, ...], asked: str | int | None, file: str | None, f
 
 
 def _checked(
-    subject: Subject, claim: Solution | Result | str | PathLike[str], *, on_surface: bool
+    subject: Subject, claim: Solution | Result | str | PathLike[str]
 ) -> tuple[Solution, tuple[BoundVerdict, ...]]:
-    """A valid solution of the subject with a division, and the checker's verdicts on its bounds."""
+    """A valid solution of the surface with a division, and the checker's verdicts on its bounds."""
     file = str(claim) if isinstance(claim, (str, PathLike)) else None
     solution = solution_of(claim)
     instance = subject.graph()
-    regions = None
-    if on_surface:
-        regions = regions_on_surface(subject.surface, subject.decomposition.vertex_cell)
+    regions = regions_on_surface(subject.surface, subject.decomposition.vertex_cell)
     report = check_solution(instance, solution, regions)
     if report.problems:
         message = f"no valid solution of {subject.path or instance.name}: {report.problems[0]}"

@@ -142,18 +142,11 @@ def judge_trajectory(
     )
 
 
-def proven_range(
-    surface: Solvable,
-    *,
-    strands: int | None = None,
-    **search: Unpack[Search],
-) -> ProvenRange:
+def proven_range(surface: Solvable, **search: Unpack[Search]) -> ProvenRange:
     """The proven range of the fewest segments of a labelled surface.
 
     Args:
         surface: a labelled surface or a scene: its file, its shipped name, the value.
-        strands: corridors that may cross one topological edge, None for the usual number; more
-            may lower the upper end.
         **search: :class:`~cellcolor.door.asked.Search`. The time limit is 60 s if it is left out;
             both ends hold however early it ends.
 
@@ -162,7 +155,7 @@ def proven_range(
         OutOfTime: the time limit came before there was a surface.
     """
     search["time_limit"] = Deadline.of(search.get("time_limit", SECONDS))  # one for all of it
-    return Oracle(surface, strands=strands, **search).bounds
+    return Oracle(surface, **search).bounds
 
 
 def judge(

@@ -65,7 +65,6 @@ class Oracle:
         self,
         source: Solvable,
         *,
-        strands: int | None = None,
         bounds: ProvenRange | None = None,
         cache: str | PathLike[str] | None = None,
         **search: Unpack[Search],
@@ -75,7 +74,6 @@ class Oracle:
         Args:
             source: a labelled surface, a scene, or an instance that names its surface: its file,
                 its shipped name, the value.
-            strands: corridors that may cross one topological edge, None for the usual number.
             bounds: this surface's proven range, if it is known already: then nothing is proved,
                 and no better plan is looked for.
             cache: a folder where the proof is kept for later processes, and looked for first.
@@ -92,11 +90,7 @@ class Oracle:
         limit = self._time_limit = search.get("time_limit", SECONDS)
         options = options_of(search, Search)
         self._subject = open_subject(source, Deadline.of(self._time_limit))
-        self._options: dict[str, Any] = {
-            "strands": strands,
-            "workers": options.workers,
-            "seed": options.seed,
-        }
+        self._options: dict[str, Any] = {"workers": options.workers, "seed": options.seed}
         self._cache: ProofCache | None = None
         if cache is not None:
             seconds = float(limit) if isinstance(limit, (int, float)) else Deadline.of(limit).left

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
-from cellcolor.arrays import Array
 from cellcolor.checker.division import check_solution
 from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.plan import Plan
@@ -30,7 +29,6 @@ def paint(
     source: Solvable,
     solution: Solution | Result | str | PathLike[str],
     *,
-    tool_radius_m: float | None = None,
     time_limit: TimeLimit = None,
 ) -> Painted:
     """Paint every vertex of a surface in the colors of a solution (docs/motion.md).
@@ -39,8 +37,6 @@ def paint(
         source: what was solved: a labelled surface, a scene, or an instance that names its
             surface; its file, its shipped name, the value.
         solution: its solution, or the file of one.
-        tool_radius_m: of the tool's footprint: for a better posture a border bends about as sharply
-            as its rim; None for that of the scene's setup, or else for one mean mesh edge.
         time_limit: seconds, None for no limit.
 
     Returns:
@@ -51,8 +47,7 @@ def paint(
         (:mod:`cellcolor.motion.scene_painting`).
 
     Raises:
-        InputError: one of the two cannot be used, they do not belong together, or the radius is not
-            positive.
+        InputError: one of the two cannot be used, or they do not belong together.
         OutOfTime: the time limit came first.
         TooLarge: the refined mesh would not fit into memory.
     """
@@ -65,17 +60,10 @@ def paint(
         raise InputError(None, None, f"the solution is not valid: {problems[0]}")
     if subject.built is None:
         drawn = paint_solution(surface, decomposition, solution, deadline)
-        return move_borders(drawn, tool_radius_m, deadline=deadline)
-
+        return move_borders(drawn, deadline=deadline)
     from cellcolor.motion.scene_painting import paint_scene
 
-    return paint_scene(
-        subject.built,
-        decomposition,
-        solution,
-        tool_radius_m=tool_radius_m,
-        deadline=deadline,
-    ).painted
+    return paint_scene(subject.built, decomposition, solution, deadline=deadline).painted
 
 
 def cover(
@@ -85,7 +73,6 @@ def cover(
     pattern: str = "contour",
     spacing_m: float,
     tool_radius_m: float,
-    normals: Any = None,
     **work: Unpack[Work],
 ) -> Covered:
     """Lay one continuous path on every segment of a painted surface (docs/motion.md).
@@ -99,7 +86,6 @@ def cover(
             registers.
         spacing_m: desired distance between neighboring passes, m.
         tool_radius_m: of the tool's footprint, m.
-        normals: (n, 3) outward unit normals at the vertices; those of the mesh if it is None.
         **work: :class:`~cellcolor.door.asked.Work`; told is the name of each stage as it begins.
 
     Returns:
@@ -137,26 +123,11 @@ def cover(
         if color is not None:
             colors[segment] = color
     check_spacing(surface, segment_of, spacing_m)
-    rows = surface.vertex_normals if normals is None else _unit_rows(normals, len(segment_of))
     return cover_segments(
-        Segments(surface, segment_of, colors, rows),
+        Segments(surface, segment_of, colors, surface.vertex_normals),
         pattern=pattern,
         spacing_m=spacing_m,
         tool_radius_m=tool_radius_m,
         deadline=deadline,
         progress=progress,
     )
-
-
-def _unit_rows(normals: Any, count: int) -> Array:
-    """Normals of length 1."""
-    from cellcolor.data.value import RowsOfThree, adapter_of
-    from cellcolor.files.validation import validated
-
-    (rows,) = validated(adapter_of(tuple[RowsOfThree]), (normals,), ("normals",))
-    if len(rows) != count:
-        raise InputError(None, "normals", f"has {len(rows)} entries for {count} vertices")
-    lengths = np.linalg.norm(rows, axis=1)
-    if (lengths == 0).any():
-        raise InputError(None, f"normals[{int(lengths.argmin())}]", "has no direction")
-    return np.asarray(rows / lengths[:, None])

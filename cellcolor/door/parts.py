@@ -50,7 +50,7 @@ def repair(
     *,
     unit: str | None = None,
     fill_holes_m: float = 0.0,
-    least_component: float | None = None,
+    least_component: float = 0.01,
     edge_length_m: float | None = None,
     **work: Unpack[Work],
 ) -> RepairedPart:
@@ -61,7 +61,7 @@ def repair(
         unit: ``m``, ``mm``, ``cm`` or ``in``; None for the likely one.
         fill_holes_m: holes with a border up to that length are filled.
         least_component: components with less than this share of the largest one's area are
-            dropped; None for a hundredth.
+            dropped.
         edge_length_m: remesh to edges of about that length; needs the extra ``parts``.
         **work: :class:`~cellcolor.door.asked.Work`.
 
@@ -72,7 +72,7 @@ def repair(
     deadline, tell = begun(work)
     with _opened(part, deadline, tell) as (_, vertices, faces):
         from cellcolor.frontend.parts.mesh_file import UNITS, likely_unit
-        from cellcolor.frontend.parts.repairing import LEAST_SHARE, repair_mesh
+        from cellcolor.frontend.parts.repairing import repair_mesh
 
         reason = f"must be one of {', '.join(UNITS)}, is {unit!r}"
         if unit is None:
@@ -81,10 +81,8 @@ def repair(
         scale = UNITS.get(unit or "")
         if scale is None:
             raise InputError(None, "unit", reason)
-        share = LEAST_SHARE if least_component is None else least_component
-        return repair_mesh(
-            vertices, faces, scale, fill_holes_m, share, edge_length_m, deadline, tell
-        )
+        how = fill_holes_m, least_component, edge_length_m
+        return repair_mesh(vertices, faces, scale, *how, deadline, tell)
 
 
 @contextmanager

@@ -133,9 +133,11 @@ def _of_shell(mesh: TriangleMesh, sides: list[Mask], flip: bool) -> tuple[int, s
 
 def _cover(mesh: TriangleMesh, faces: Mask) -> str:
     """The scene's table for one side."""
-    from cellcolor.frontend.parts.cover import SHARP_RAD, inner_point
+    from cellcolor.frontend.parts.cover import SHARP_RAD
 
-    seed = [round(x, 6) + 0.0 for x in inner_point(mesh, faces).tolist()]
+    largest = np.argmax(np.where(faces, mesh.areas, 0.0))
+    middle = mesh.points[mesh.corners[largest]].mean(axis=0)
+    seed = [round(x, 6) + 0.0 for x in middle.tolist()]
     return (
         "\n# The faces around a point, up to sharp edges; the rest must only not be hit.\n"
         f"[cover]\nregion = {{ seed_m = {json.dumps(seed)}, sharp_rad = {SHARP_RAD} }}\n"

@@ -24,8 +24,7 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.links import continuous_along, valid_along
 from cellcolor.frontend.parts.surface import MOST_VERTICES
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.frontend.reach.continuity import Coloring, color_nodes
-from cellcolor.frontend.reach.limit_colors import LimitColors, limit_colors
+from cellcolor.frontend.reach.colors import Coloring, LimitColors, color_nodes, limit_colors
 from cellcolor.frontend.reach.slivers import SliverReport, clean
 from cellcolor.frontend.reach.validity_tests import Verdicts
 from cellcolor.frontend.report import BuildReport, report_on
@@ -181,13 +180,8 @@ class BuildResult(Drawn):
         if not self.slivers.any():
             return None
         limits = _limited(self.prepared, self.verdicts, self.all_colors)
-        raw = replace(
-            self.surface,
-            colors=limits.names,
-            vertex_colors=_vertex_colors(limits, len(self.surface.vertices)),
-            cracks=limits.cracks,
-            given_up=(),
-        )
+        labels = _labels(limits, len(self.surface.vertices))
+        raw = replace(self.surface, **labels, given_up=())
         return raw if self.left_alone is None else raw.without_vertices(self.left_alone)
 
     @property
@@ -340,11 +334,9 @@ def colored(
     lost = verdicts.valid.any(axis=1) & (coloring.node_color < 0).all(axis=1)
     labelled = LabelledSurface(
         name=prepared.scene.name,
-        colors=limits.names,
         vertices=surface.vertices,
         faces=surface.faces,
-        vertex_colors=_vertex_colors(limits, len(surface.vertices)),
-        cracks=limits.cracks,
+        **_labels(limits, len(surface.vertices)),
         meta=_meta(prepared.scene, report, clock.seconds),
         given_up=tuple(np.flatnonzero(lost).tolist()),
     )
@@ -370,9 +362,11 @@ def _limited(prepared: PreparedScene, verdicts: Verdicts, coloring: Coloring) ->
     return limit_colors(robot, coloring, verdicts.configurations, prepared.surface.mesh.edges)
 
 
-def _vertex_colors(limits: LimitColors, vertices: int) -> tuple[tuple[int, ...], ...]:
+def _labels(limits: LimitColors, vertices: int) -> dict[str, Any]:
+    """What a labelled surface of that many vertices says of its colors."""
     members = np.array(limits.members, dtype=bool).reshape(-1, vertices).T
-    return tuple(tuple(np.flatnonzero(own).tolist()) for own in members)
+    own = tuple(tuple(np.flatnonzero(row).tolist()) for row in members)
+    return {"colors": limits.names, "vertex_colors": own, "cracks": limits.cracks}
 
 
 def _meta(

@@ -15,10 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, Mask, numbered
+from cellcolor.configurations.matching import stays_within
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.reach.continuity import link
+from cellcolor.frontend.reach.smooth import Measure, Probe, follow_edges
 from cellcolor.frontend.reach.validity_tests import Verdicts
 from cellcolor.memory import batches, chunks
 
@@ -38,9 +39,8 @@ def at_domain_border(edges: Index, valid: Mask) -> Mask:
     """
     i, j = edges.T
     beside = np.zeros_like(valid)
-    for here, there in ((i, j), (j, i)):
-        rows, branches = np.nonzero(~valid[there])
-        beside[here[rows], branches] = True
+    np.logical_or.at(beside, i, ~valid[j])
+    np.logical_or.at(beside, j, ~valid[i])
     border: Mask = beside[i] | beside[j]
     return border
 
@@ -112,6 +112,39 @@ def remains_valid(
                 for p in batches(count + 1)
             ]
     return result
+
+
+def link(
+    surface: Surface,
+    edges: Index,
+    verdicts: Verdicts,
+    measure: Measure,
+    limits: tuple[Array, Array] | None,
+    probe: Probe,
+) -> Mask:
+    """Whether the two configurations of a branch on an edge's ends are continuous, (k, branches).
+
+    False where one of the ends has no valid configuration of that branch. Otherwise the branch is
+    followed along the edge, see :mod:`cellcolor.frontend.reach.smooth`.
+
+    Args:
+        edges: (k, 2) vertex indices.
+        limits: lower and upper (joints,) in rad or m, which the motion has to keep.
+        probe: see :data:`~cellcolor.frontend.reach.smooth.Probe`; called with points in between.
+    """
+    i, j = edges.T
+    linked: Mask = verdicts.valid[i] & verdicts.valid[j]
+    rows, branches = np.nonzero(linked)
+    start, end = (verdicts.configurations[side[rows], branches] for side in (i, j))
+    at_start, at_end = (verdicts.determinants[side[rows], branches] for side in (i, j))
+    ends, determinants = (start, end), (at_start, at_end)
+    motions = follow_edges(surface, edges[rows], branches, ends, determinants, measure, probe)
+    smooth = motions.smooth
+    if limits is not None:
+        moved = motions.lowest, motions.highest
+        smooth = smooth & stays_within(limits, start, *moved, measure.periods)
+    linked[rows, branches] = smooth
+    return linked
 
 
 def continuous_along(

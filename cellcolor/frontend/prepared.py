@@ -133,10 +133,16 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
         shape = scene.solid_object.surface(scene.folder, deadline)
     body = Shape("mesh", vertices=shape.vertices, faces=shape.faces)
     around = _surroundings(scene, arm, deadline)
-    own = {"own_surface": covered, "own_body": body}
-    prepared = _in_place(
-        PreparedScene(arm=arm, target=body, scene=scene, surface=surface, **own, **around)
+    prepared = PreparedScene(
+        arm=arm,
+        target=body,
+        scene=scene,
+        own_surface=covered,
+        own_body=body,
+        surface=surface,
+        **around,
     )
+    prepared = _in_place(prepared)
     notes = arm.robot.warnings + notes_on_shapes(arm.robot) + notes_on_units(scene, reach)
     if covered.faceted:  # a shape is made without
         notes += note_on_crossings(covered.mesh) + note_on_shell(covered)

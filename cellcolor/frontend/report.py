@@ -20,8 +20,7 @@ from cellcolor.data.wording import count
 from cellcolor.frontend.parts.cover import spread
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.reach.continuity import Coloring
-from cellcolor.frontend.reach.limit_colors import LimitColors
+from cellcolor.frontend.reach.colors import LimitColors
 from cellcolor.frontend.reach.slivers import SliverReport
 from cellcolor.frontend.reach.validity_tests import STANDARD_TESTS
 from cellcolor.mesh.triangle_mesh import TriangleMesh
@@ -162,6 +161,11 @@ def report_on(built: BuildResult) -> BuildReport:
     prepared, verdicts, limits = built.prepared, built.verdicts, built.limits
     surface, names = prepared.surface, verdicts.reason_names
     areas, reached = surface.mesh.vertex_areas, verdicts.valid.any(axis=1)
+    coloring, colors = built.coloring, []
+    for color, (name, branch) in enumerate(zip(coloring.names, coloring.branch, strict=True)):
+        own = coloring.node_color[:, branch] == color
+        area = float(areas[own].sum())
+        colors.append(ColorReport(name, built.branches[branch], int(own.sum()), area))
     # Codes are in the order of the tests.
     farthest = verdicts.reasons.max(axis=1)[~reached]
     remarks = prepared.arm.kinematics.remarks(surface.vertices, -surface.normals)
@@ -177,8 +181,8 @@ def report_on(built: BuildResult) -> BuildReport:
         reachable_area_m2=float(areas[reached].sum()),
         candidates=_count_reasons(verdicts.reasons.ravel(), names),
         unreachable=_count_reasons(farthest, names, 1),
-        colors=_color_reports(surface, built.coloring, built.branches),
-        cracks=len(built.coloring.cracks),
+        colors=tuple(colors),
+        cracks=len(coloring.cracks),
         seconds=built.seconds,
         notes=prepared.notes + remarks + hulls,
         stand_ins=tuple(map(str, prepared.robot.stand_ins)),
@@ -195,23 +199,6 @@ def _limits_in_words(limits: LimitColors) -> str:
     if limits.winding:
         text += f"; {len(limits.winding)} of them cut, as they wind around"
     return text
-
-
-def _color_reports(
-    surface: Surface, coloring: Coloring, branch_names: tuple[str, ...]
-) -> tuple[ColorReport, ...]:
-    """What each color reaches."""
-    vertex, branch = np.nonzero(coloring.node_color >= 0)
-    color = coloring.node_color[vertex, branch]
-    sizes = np.bincount(color, minlength=len(coloring.names)).tolist()
-    areas = surface.mesh.vertex_areas[vertex]
-    domains = np.bincount(color, areas, minlength=len(coloring.names)).tolist()
-    return tuple(
-        ColorReport(name, branch_names[number], size, area)
-        for name, number, size, area in zip(
-            coloring.names, coloring.branch, sizes, domains, strict=True
-        )
-    )
 
 
 def _count_reasons(

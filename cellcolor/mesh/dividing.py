@@ -49,14 +49,20 @@ def cut(
     if first is None:
         after_whole = (is_cut.argmin(axis=1) + 1) % 3
         first = np.where(is_cut.sum(axis=1) == 2, after_whole, is_cut.argmax(axis=1))
-    names = _from(first, mesh.corners, middle)
+    order = (first[:, None] + np.arange(3)) % 3
+    names = np.hstack([np.take_along_axis(x, order, 1) for x in (mesh.corners, middle)])
     names = np.concatenate([names, names[:, [4, 0]]], axis=1)
     if points is not None:
         two = np.flatnonzero(is_cut.sum(axis=1) == 2)
         a, c, ab, bc = (points[names[two, corner]] for corner in (0, 2, 3, 4))
         other = ~(np.linalg.norm(a - bc, axis=1) < np.linalg.norm(ab - c, axis=1))
         names[two[other], 6:] = names[two[other]][:, [2, 3]]
-    return _pieces(names)
+    found, of = [], []
+    for sides, parts in _PIECES.items():
+        rows = np.flatnonzero(((names[:, 3:6] >= 0) == sides).all(axis=1))
+        found += [names[rows][:, part] for part in parts]
+        of += [rows] * len(parts)
+    return np.concatenate(found), np.concatenate(of)
 
 
 def halved(mesh: TriangleMesh, marked: Mask) -> tuple[TriangleMesh, Index]:
@@ -85,22 +91,6 @@ def with_longest_sides(mesh: TriangleMesh, marked: Mask) -> Mask:
         if not len(missing):
             return marked
         marked[missing] = True
-
-
-def _from(first: Index, corners: Index, middle: Index) -> Index:
-    """Corners and new points (m, 6) of triangles turned so that a side of each comes first."""
-    order = (first[:, None] + np.arange(3)) % 3
-    return np.concatenate([np.take_along_axis(x, order, 1) for x in (corners, middle)], axis=1)
-
-
-def _pieces(names: Index) -> tuple[Index, Index]:
-    is_cut = names[:, 3:6] >= 0
-    found, of = [], []
-    for sides, parts in _PIECES.items():
-        rows = np.flatnonzero((is_cut == sides).all(axis=1))
-        found += [names[rows][:, part] for part in parts]
-        of += [rows] * len(parts)
-    return np.concatenate(found), np.concatenate(of)
 
 
 def small_triangles(mesh: TriangleMesh) -> tuple[TriangleMesh, Index]:

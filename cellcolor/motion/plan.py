@@ -23,7 +23,7 @@ from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.transfers import Transfers
 from cellcolor.motion.ways import Transfer
 from cellcolor.painting.paint import Painted
-from cellcolor.tool_paths.cover import Covered, check_spacing
+from cellcolor.tool_paths.cover import check_spacing
 from cellcolor.tool_paths.region import Segments
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN
 
@@ -97,7 +97,8 @@ def plan_motion(
     if on_paths is not None:
         on_paths(paths)
     strokes = [stroke for _, own in found for stroke in own]
-    left_out = _left_out(covered)
+    uncovered = [place for laid in covered for place in laid.uncovered]
+    left_out = tuple(sorted(uncovered, key=lambda part: (-part.area_m2, part.segment, part.place)))
     if not strokes:
         whole = float(surface.mesh.vertex_areas[segment_of >= 0].sum())
         raise InputError(None, None, _no_stroke(whole, left_out, motion.spacing_m))
@@ -118,16 +119,6 @@ def plan_motion(
         trajectory,
         _cut_off(strokes, transfers, color_of, planner.home is not None),
     )
-
-
-def _left_out(covered: Sequence[Covered]) -> tuple[LeftOut, ...]:
-    """What no path comes near to, the largest first."""
-    found = [
-        LeftOut(place.segment, place.area_m2, place.cause, place.place)
-        for laid in covered
-        for place in laid.uncovered
-    ]
-    return tuple(sorted(found, key=lambda part: (-part.area_m2, part.segment, part.place)))
 
 
 def _cut_off(

@@ -49,24 +49,22 @@ def paint_scene(
     decomposition: Decomposition,
     solution: Solution,
     *,
-    tool_radius_m: float | None = None,
     deadline: Deadline = NEVER,
     progress: Progress | None = None,
 ) -> ScenePainting:
     """Paint a solution of a scene, and ask the scene about every vertex that is new.
 
-    Args:
-        tool_radius_m: of the footprint; None for that of the setup, or for one mean mesh edge.
+    For a better posture a border bends about as sharply as the rim of the tool's footprint; without
+    one in the setup its radius is taken to be one mean mesh edge.
 
     Raises:
-        InputError: the solution has no division, or the radius is not positive.
+        InputError: the solution has no division.
         TooLarge: a painting would need too many vertices.
     """
     prepared = built.prepared
     clock = StageClock(deadline, progress)
     motion = prepared.scene.setup.motion
-    if tool_radius_m is None and motion is not None:
-        tool_radius_m = motion.tool_radius_m
+    radius = None if motion is None else motion.tool_radius_m
     minima: list[int] = []
     while True:
         minima.append(solution.segments or 0)
@@ -81,7 +79,7 @@ def paint_scene(
         clock.begin("moving borders")
         branch = np.array(built.color_branch)
         cost = color_costs(prepared.robot, finer.verdicts)[:, branch]
-        painted = move_borders(drawn, tool_radius_m, cost, deadline)
+        painted = move_borders(drawn, radius, cost, deadline)
         refused = () if whole else _refused(painted, finer, branch)
         if not refused or len(minima) == _TIMES:
             painted = replace(painted, minima=tuple(minima), refused=refused)

@@ -65,7 +65,6 @@ def prove(
     surface: LabelledSurface,
     deadline: Deadline,
     *,
-    strands: int | None = None,
     workers: int | None = None,
     seed: int = 0,
 ) -> Proof:
@@ -73,19 +72,17 @@ def prove(
 
     Args:
         deadline: when to return what is proved; both ends hold however early that is.
-        strands: corridors that may cross one topological edge, None for the usual number.
         workers: CP-SAT's search workers, None for its portfolio.
 
     Raises:
         InputError: a cell of the surface is not planar, or an option is out of its range.
     """
     started = time.monotonic()
-    corridors = STRANDS["surface"] if strands is None else strands
     # The paper's search space is the smaller one: where its optimum meets a bound for any
     # division, there is nothing left to search.
     searches = (
         Options("paper", deadline=deadline, workers=workers, seed=seed),
-        Options("surface", corridors, deadline, workers, seed),
+        Options("surface", STRANDS["surface"], deadline, workers, seed),
     )
     try:
         decomposition = decomposition_of(surface, None, deadline)

@@ -53,25 +53,7 @@ class SurfaceView:
 
 
 def draw_surface(surface: LabelledSurface, view: SurfaceView) -> Picture3D:
-    """The surface as the view wants it."""
-    normals = surface.vertex_normals
-    marks = [
-        Text(f"vertex {vertex}", surface.vertices[vertex], normals[vertex])
-        for vertex in view.marked
-    ]
-    return Picture3D(
-        title=view.title,
-        mesh=classed(surface, view),
-        layers=(),
-        lines=(),
-        texts=(*_numbers(surface, view), *marks),
-        notes=view.notes,
-        towards=eye(surface),
-    )
-
-
-def classed(surface: LabelledSurface, view: SurfaceView) -> ClassedMesh:
-    """The surface's mesh with the view's classes and lines."""
+    """The surface as the view wants it: with its classes, and with lines between them."""
     first, second = surface.mesh.edges.T
     borders = view.labels if view.borders is None else view.borders
     out = np.isin(view.labels, view.labels[list(view.marked)])
@@ -81,7 +63,20 @@ def classed(surface: LabelledSurface, view: SurfaceView) -> ClassedMesh:
     if view.cracks:
         lines[surface.mesh.marked(view.cracks)] = Line.CRACK
     of_sides = lines[surface.mesh.edge_of_side].astype(np.uint8)
-    return ClassedMesh(surface.vertices, surface.faces, view.labels, view.classes, of_sides)
+    normals = surface.vertex_normals
+    marks = [
+        Text(f"vertex {vertex}", surface.vertices[vertex], normals[vertex])
+        for vertex in view.marked
+    ]
+    return Picture3D(
+        title=view.title,
+        mesh=ClassedMesh(surface.vertices, surface.faces, view.labels, view.classes, of_sides),
+        layers=(),
+        lines=(),
+        texts=(*_numbers(surface, view), *marks),
+        notes=view.notes,
+        towards=eye(surface),
+    )
 
 
 def mesh_picture_parts(vertices: Array, faces: Index, labels: Index) -> tuple[Array, Index, Index]:

@@ -80,18 +80,10 @@ def draw_color(surface: LabelledSurface, color: int) -> Picture3D:
 def draw_segments(
     surface: LabelledSurface, decomposition: Decomposition, solution: Solution
 ) -> Picture3D:
-    """Every segment of a valid solution in the paint of its color."""
-    return draw_surface(*by_solution(surface, decomposition, solution))
-
-
-def by_solution(
-    surface: LabelledSurface, decomposition: Decomposition, solution: Solution
-) -> tuple[LabelledSurface, SurfaceView]:
-    """The surface to draw a solution on, and every segment there in the paint of its color.
+    """Every segment of a valid solution in the paint of its color.
 
     Args:
-        decomposition: its topological graph.
-        solution: a valid solution of the graph, with a division.
+        solution: a valid one of the graph, with a division.
 
     Raises:
         TooLarge: a painting would need too many vertices.
@@ -146,7 +138,7 @@ def by_solution(
         cracks=fine.crack_colors,
         notes=tuple(notes),
     )
-    return fine, view
+    return draw_surface(fine, view)
 
 
 def by_segment(painted: Painted) -> SurfaceView:

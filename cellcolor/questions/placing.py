@@ -34,7 +34,7 @@ from cellcolor.frontend.links import continuous_along
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 from cellcolor.frontend.parts.remeshing import fold_angle, folds, length_for, remeshed
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.frontend.reach.continuity import regions
+from cellcolor.frontend.reach.colors import regions
 from cellcolor.frontend.scene import Scene
 from cellcolor.questions.placements import SAME_SHARE, VARIABLES, PlacedMinimum, Pose, Ranges
 from cellcolor.solvers import checked

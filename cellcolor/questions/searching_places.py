@@ -12,11 +12,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TypeAlias
 
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
-from cellcolor.errors import InputError
+from cellcolor.errors import CellcolorError, InputError
 from cellcolor.frontend.scene import Scene
+from cellcolor.processes import Task, as_they_end
 from cellcolor.questions.placements import (
     Leeway,
     PlacedMinimum,
@@ -30,13 +30,10 @@ from cellcolor.questions.placing import (
     displaced,
     distance,
     is_inside,
+    minima_at,
     pose_of,
     spread,
 )
-
-Minima: TypeAlias = Callable[[Scene, Sequence[Pose], float | None], Iterator[list[PlacedMinimum]]]
-"""Asks for the minimum of each placement of a scene, or for bounds where the share that is enough
-is given, some at a time in any order. Rows are missing where the time limit comes first."""
 
 _OWN = "own"  # the mesh of the scene itself
 _CLOSER = (0.3, 0.15, 0.08, 0.04, 0.02)
@@ -45,38 +42,32 @@ _AROUND = 3  # placements that get boxes
 _NEXT = 0.05  # of the ranges; of placements nearer to each other one is enough
 _BESIDE = 64  # samples of how far a placement may be off
 _TOGETHER = 16  # of them, before it is asked whether they hold
+_BATCH = 32  # placements per task; reading the scene takes as long as one or two of them
+_ATTEMPTS = 2  # how often a task is tried whose process was lost
+_ENDING = 10.0  # s that a process may take beyond its time
+_ALL_DAY = 86_400.0  # s, the limit of a process if there is no time limit
 
 
 def search_places(
     scene: Scene,
     question: PlacementQuestion,
-    minima: Minima,
+    jobs: int,
     deadline: Deadline,
     report: Callable[[str], None],
 ) -> Placements:
     """Look for placements with fewer lift-offs, and prove the best ones.
 
     Args:
-        minima: asked about each placement once on each mesh, and again where bounds do not do.
+        jobs: processes at a time.
         report: told what is being done.
 
     Raises:
         InputError: the part cannot stand where the scene has it, and no share is asked for.
         OutOfTime: the deadline came before the scene itself was solved.
+        CellcolorError: a task failed, or its process was lost in every attempt.
     """
     report("where it stands")
-    start = (0.0,) * 6 if question.base else pose_of(scene.placement)
-    deadline.check()
-    here = next((row for rows in minima(scene, [start], None) for row in rows), None)
-    if here is None:
-        raise OutOfTime
-    if question.cover is None and here.segments is None:
-        message = (
-            "say how much has to be covered: where the scene has it, the part cannot stand "
-            f"({here.refused or 'not solved in time'})"
-        )
-        raise InputError(None, "cover", message)
-    search = _Search(scene, question, here, minima, deadline, report)
+    search = _Search(scene, question, jobs, deadline, report)
     try:
         search.try_on_coarse_mesh()
         search.prove()
@@ -96,15 +87,26 @@ class _Search:
         self,
         scene: Scene,
         question: PlacementQuestion,
-        here: PlacedMinimum,
-        ask: Minima,
+        jobs: int,
         deadline: Deadline,
         report: Callable[[str], None],
     ) -> None:
+        """Solve the scene where it has its part."""
         self.complete = True
-        self._scene, self._question, self._here = scene, question, here
-        self._ask, self._deadline, self._report = ask, deadline, report
-        self._known = {(_OWN, here.pose): here}
+        self._scene, self._question, self._jobs = scene, question, jobs
+        self._deadline, self._report = deadline, report
+        self._known: dict[tuple[str, Pose], PlacedMinimum] = {}
+        start = (0.0,) * 6 if question.base else pose_of(scene.placement)
+        rows = self._minima(scene, _OWN, [start])
+        if not rows:
+            raise OutOfTime
+        self._here = here = rows[0]
+        if question.cover is None and here.segments is None:
+            message = (
+                "say how much has to be covered: where the scene has it, the part cannot stand "
+                f"({here.refused or 'not solved in time'})"
+            )
+            raise InputError(None, "cover", message)
         self._cover = here.covered_share if question.cover is None else question.cover
         self._enough = self._cover  # on the coarse mesh
         self._tried: list[PlacedMinimum] = []
@@ -183,12 +185,36 @@ class _Search:
             if its == mesh and (cover is not None or not row.at_least)
         }
         new = [pose for pose in dict.fromkeys(poses) if pose not in known]
-        for rows in self._ask(scene, new, cover):
+        for rows in self._computed(scene, new, cover):
             known |= {row.pose: row for row in rows}
             self._known |= {(mesh, row.pose): row for row in rows}
             self._report(f"{len(self._known)} placements")
         self.complete &= known.keys() >= set(poses)
         return [known[pose] for pose in poses if pose in known]
+
+    def _computed(
+        self, scene: Scene, poses: Sequence[Pose], cover: float | None
+    ) -> Iterator[list[PlacedMinimum]]:
+        """The rows of placements, some at a time, in the order in which they are done."""
+        how = 1, self._question.seed, self._question.base, cover
+        size = min(_BATCH, -(-len(poses) // self._jobs) or 1)
+        lost = [poses[at : at + size] for at in range(0, len(poses), size)]
+        if 1 in (self._jobs, len(poses)):  # this process does what there is one of
+            for part in lost:
+                yield minima_at(scene, part, self._deadline.left, *how)
+            return
+        for attempt in range(1, _ATTEMPTS + 1):
+            left = self._deadline.left
+            most = min(left, _ALL_DAY) + _ENDING
+            tasks = [(part, Task(minima_at, (scene, part, left, *how), most)) for part in lost]
+            lost = []
+            for part, ended in as_they_end(self._jobs, tasks):
+                if ended.end in ("done", "timeout", "stopped"):
+                    yield ended.value or []
+                elif ended.end == "failed" or attempt == _ATTEMPTS:
+                    raise CellcolorError(f"placements could not be tried: {ended.error}")
+                else:  # the process was lost; the work is repeated
+                    lost.append(part)
 
     def _try(self, coarse: Scene, mesh: str, poses: Sequence[Pose]) -> None:
         self._tried += self._minima(coarse, mesh, poses, self._enough)

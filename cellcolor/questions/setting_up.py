@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
@@ -24,9 +24,9 @@ from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 
 
-@dataclass(frozen=True)
+@dataclass
 class Candidates:
-    """Set-ups that could be used.
+    """Set-ups that could be used, as far as they are built.
 
     Attributes:
         scenes: of each, with the part in its place.
@@ -35,9 +35,9 @@ class Candidates:
         left: how many the deadline left unbuilt.
     """
 
-    scenes: tuple[Scene, ...]
-    surfaces: tuple[LabelledSurface, ...]
-    refused: tuple[str, ...]
+    scenes: list[Scene] = field(default_factory=list)
+    surfaces: list[LabelledSurface] = field(default_factory=list)
+    refused: list[str] = field(default_factory=list)
     left: int = 0
 
 
@@ -82,24 +82,22 @@ def candidates_of(
         OutOfTime: the deadline came before the first was built.
     """
     report = progress or (lambda _: None)
-    found: list[tuple[Scene, LabelledSurface]] = []
-    refused: list[str] = []
-    part: LabelledSurface | None = None
+    found = Candidates()
     for given in scenes:
         prepared: PreparedScene | None = None
         for pose in dict.fromkeys((pose_of(given.placement), *poses)):
-            report(f"set-up {len(found) + len(refused) + 1}")
+            report(f"set-up {len(found.scenes) + len(found.refused) + 1}")
             placement = Placement(position_m=pose[:3], rpy_rad=pose[3:])
             try:
                 if prepared is None:
                     prepared = prepare(given.varied(placement=placement, file=given.file), deadline)
                 surface = _built(prepared.at(given.varied(placement=placement)), deadline)
             except OutOfTime:
-                if not found:
+                if not found.scenes:
                     raise
                 places = [{pose_of(one.placement), *poses} for one in scenes]
-                left = sum(map(len, places)) - len(found) - len(refused)
-                return replace(_together(found, refused), left=left)
+                found.left = sum(map(len, places)) - len(found.scenes) - len(found.refused)
+                return found
             except InputError as error:
                 own_place = pose == pose_of(given.placement)
                 named = (given is not scenes[0]) if own_place else (by_hand and len(scenes) == 1)
@@ -111,20 +109,15 @@ def candidates_of(
                     message = f"{_in_words(pose)} is no set-up: {error.message}"
                     raise InputError(file, "placement", message) from error
                 stop = f" with {positions_in_words(fixed)}" if (fixed := _fixed(given)) else ""
-                refused.append(f"{given.name} at {_in_words(pose)}{stop}: {error.message}")
+                found.refused.append(f"{given.name} at {_in_words(pose)}{stop}: {error.message}")
                 continue
-            _check_same_part(part, prepared)
-            part = part or surface
-            scene = prepared.scene.varied(placement=placement, file=given.file)
-            found.append((scene, surface))
-    if not found:
-        raise InputError(None, None, f"no set-up can be used; {refused[0]}")
-    return _together(found, refused)
-
-
-def _together(found: Sequence[tuple[Scene, LabelledSurface]], refused: Sequence[str]) -> Candidates:
-    scenes, surfaces = zip(*found, strict=True)
-    return Candidates(tuple(scenes), tuple(surfaces), tuple(refused))
+            if found.surfaces:
+                _check_same_part(found.surfaces[0], prepared)
+            found.scenes.append(prepared.scene.varied(placement=placement, file=given.file))
+            found.surfaces.append(surface)
+    if not found.scenes:
+        raise InputError(None, None, f"no set-up can be used; {found.refused[0]}")
+    return found
 
 
 def _fixed(scene: Scene) -> dict[str, float]:
@@ -152,9 +145,7 @@ def _built(there: PreparedScene, deadline: Deadline) -> LabelledSurface:
     )
 
 
-def _check_same_part(part: LabelledSurface | None, prepared: PreparedScene) -> None:
-    if part is None:
-        return
+def _check_same_part(part: LabelledSurface, prepared: PreparedScene) -> None:
     own = prepared.own_surface
     same = np.array_equal(part.vertices, own.vertices) and np.array_equal(part.faces, own.faces)
     if not same:
@@ -178,14 +169,9 @@ def plan_of(
     report = progress or (lambda _: None)
     report("one set-up alone")
     areas = choice.surface.vertex_areas
-    reached = np.zeros(len(areas), dtype=bool)
-    shares = []
-    for surface in candidates.surfaces:
-        own = surface.colored
-        reached |= own
-        shares.append(float(areas[own].sum()))
-    whole = float(areas[reached].sum())
-    best = max(range(len(shares)), key=lambda number: shares[number])
+    reached = np.array([surface.colored for surface in candidates.surfaces])
+    covered, whole = reached @ areas, float(areas[reached.any(axis=0)].sum())
+    best = int(np.argmax(covered))
     instance = decomposition_of(candidates.surfaces[best]).instance
     alone = checked.solve(instance, options)
     return SetUpPlan(
@@ -197,9 +183,9 @@ def plan_of(
         fewest_set_ups=choice.fewest_set_ups,
         at_least_segments=choice.at_least_segments,
         proved=choice.proved,
-        alone=_set_up(candidates, best, alone.segments or 0, shares[best] / whole),
+        alone=_set_up(candidates, best, alone.segments or 0, float(covered[best]) / whole),
         candidates=len(candidates.scenes),
-        refused=candidates.refused,
+        refused=tuple(candidates.refused),
         left=candidates.left,
     )
 

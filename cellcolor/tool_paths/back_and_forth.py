@@ -7,11 +7,11 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from cellcolor.arrays import Array, Index, unit
+from cellcolor.arrays import Array, Index, stretches, unit
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
 from cellcolor.tool_paths.contour import EVENED, FINEST
-from cellcolor.tool_paths.level_lines import LevelLine, level_lines, slice_along
+from cellcolor.tool_paths.level_lines import Row, level_lines, slice_along
 from cellcolor.tool_paths.registry import Laid
 from cellcolor.tool_paths.triangles import (
     Triangles,
@@ -44,7 +44,7 @@ def lay_back_and_forth(mesh: Triangles, spacing: float, deadline: Deadline, rows
     mesh = mesh.refined(FINEST * spacing)
     if mesh.border.any():  # the line along which lines end is there to be walked along
         mesh = slice_along(mesh, mesh.from_border, np.array([_INSET * spacing])).mesh
-    found: list[tuple[Triangles, list[tuple[list[int], bool]]]] = []
+    found: list[tuple[Triangles, list[Row]]] = []
     for field in fields(mesh):
         deadline.check()
         if not np.ptp(field) > _FLAT * spacing:  # of a vector along the normal, or of a closed part
@@ -55,23 +55,21 @@ def lay_back_and_forth(mesh: Triangles, spacing: float, deadline: Deadline, rows
     return Laid(cut, _one_after_the_other(cut, lines, spacing, deadline) if lines else [])
 
 
-def _turns(mesh: Triangles, rows: list[tuple[list[int], bool]], spacing: float) -> float:
+def _turns(mesh: Triangles, rows: list[Row], spacing: float) -> float:
     """About how often the path turns: at each row, and on spurs to what rows leave out."""
     lengths = [np.linalg.norm(np.diff(mesh.points[row], axis=0), axis=1).sum() for row, _ in rows]
     missing = float(mesh.areas.sum()) / spacing - float(sum(lengths))
     return len(rows) + max(0.0, missing) / (_SPUR * spacing)
 
 
-def _rows(
-    mesh: Triangles, field: Array, spacing: float
-) -> tuple[Triangles, list[tuple[list[int], bool]]]:
+def _rows(mesh: Triangles, field: Array, spacing: float) -> tuple[Triangles, list[Row]]:
     """A mesh with level lines of a field among its edges, and these, whether they close or not."""
     field = evened(mesh, field, EVENED * spacing)
     low, high = float(field.min()), float(field.max())
     count = max(1, round((high - low) / spacing))
     levels = low + (high - low) * (np.arange(count) + 0.5) / count
     sliced = slice_along(mesh, field, levels)
-    lines = sorted(level_lines(sliced), key=lambda line: line.level)
+    lines = sorted(level_lines(sliced), key=lambda line: int(sliced.level[line[0][0]]))
     return sliced.mesh, [row for line in lines for row in _inside(sliced.mesh, line, spacing)]
 
 
@@ -163,33 +161,28 @@ def _coordinate(mesh: Triangles, p: int, q: int) -> Array:
     return np.asarray((a**2 - b**2) / (2 * max(float(a[q]), 1e-12)))
 
 
-def _inside(mesh: Triangles, line: LevelLine, spacing: float) -> list[tuple[list[int], bool]]:
-    """The stretches of a line that keep away from the border, and whether they close."""
-    row = line.vertices
+def _inside(mesh: Triangles, line: Row, spacing: float) -> list[Row]:
+    """The stretches of a line that keep away from the border."""
+    row, closed = np.array(line[0]), line[1]
     if not mesh.border.any():
-        return [(row.tolist(), line.closed)]
+        return [line]
     kept = mesh.from_border[row] > 0.9 * _INSET * spacing
     # A row beside the border weaves across the line where others end: it is one row.
     near = mesh.from_border[row] > _WEAVES * _INSET * spacing
-    runs = np.split(np.arange(len(row)), np.flatnonzero(np.diff(kept)) + 1)
-    for run in runs[1:-1]:
-        kept[run] |= near[run].all()
+    for first, after in stretches(~kept):
+        if first > 0 and after < len(row):
+            kept[first:after] = near[first:after].all()
     if kept.all():
-        return [(row.tolist(), line.closed)]
-    if line.closed:  # begin where it is interrupted
+        return [line]
+    if closed:  # begin where it is interrupted
         start = int(np.flatnonzero(~kept)[0])
         row, kept = np.roll(row, -start), np.roll(kept, -start)
-    pieces = np.split(row, np.flatnonzero(np.diff(kept)) + 1)
-    wanted = [bool(kept[0]) ^ bool(number % 2) for number in range(len(pieces))]
-    return [
-        (piece.tolist(), False)
-        for piece, own in zip(pieces, wanted, strict=True)
-        if own and len(piece) > 1
-    ]
+    kept_runs = [row[first:after].tolist() for first, after in stretches(kept)]
+    return [(run, False) for run in kept_runs if len(run) > 1]
 
 
 def _one_after_the_other(
-    mesh: Triangles, rows: list[tuple[list[int], bool]], spacing: float, deadline: Deadline
+    mesh: Triangles, rows: list[Row], spacing: float, deadline: Deadline
 ) -> list[int]:
     """All lines, from the first on; after each the one with an end nearest to where it ends."""
     graph = mesh.graph(off_border(mesh, spacing / 2))

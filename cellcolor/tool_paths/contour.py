@@ -83,12 +83,12 @@ def _lay_loops(mesh: Triangles, distances: Array, spacing: float, deadline: Dead
     levels = levels[levels < distances.max()]
     sliced = slice_along(mesh, distances, levels)
     deadline.check()
-    rows = [line.vertices for line in level_lines(sliced) if len(line.vertices) > 2]
+    rows = [row for row, _ in level_lines(sliced) if len(row) > 2]
     if not rows:
         return Laid(mesh, [])
     heights = _heights_of_cores(sliced, levels)
     cores = slice_along(sliced.mesh, heights, np.array([_CORE * spacing]))
-    rows += [line.vertices for line in level_lines(cores) if len(line.vertices) > 2]
+    rows += [row for row, _ in level_lines(cores) if len(row) > 2]
     deadline.check()
     mesh = with_room_inside(cores.mesh)
     return Laid(mesh, join_loops(mesh, rows, spacing, deadline))

@@ -11,10 +11,11 @@ import numpy as np
 from cellcolor.arrays import Index
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPaths
+from cellcolor.data.trajectory import LeftOut
 from cellcolor.data.wording import in_meters, looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
+from cellcolor.tool_paths.measures import PathMeasures, in_all, measure
 from cellcolor.tool_paths.refused import Refusals, without_refused
 from cellcolor.tool_paths.region import Overlap, Region, Segments, clipped, owned, regions_of
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, Laid, Pattern, find_pattern
@@ -48,7 +49,7 @@ class Covered:
     paths: ToolPaths
     measures: tuple[PathMeasures, ...]
     in_all: PathMeasures
-    uncovered: tuple[Uncovered, ...]
+    uncovered: tuple[LeftOut, ...]
     along_border: tuple[Index, ...] = ()
 
     def __str__(self) -> str:
@@ -101,7 +102,7 @@ def cover(
         if area < _LEAST_AREA * spacing_m**2:
             place = tuple(part.points[part.corners[0]].mean(axis=0).tolist())
             cause = "a part smaller than a quarter of the spacing squared"
-            uncovered.append(Uncovered(region.segment, area, place, cause))
+            uncovered.append(LeftOut(region.segment, area, cause, place))
             continue
         line, own, left = _better(lay, part, region.segment, spacing_m, deadline)
         path, beside = line.path(region.segment, region.color)
@@ -125,11 +126,11 @@ def _parts(
     walls: Collection[tuple[int, int]],
     refusals: Refusals | None,
     overlap: Overlap | None,
-) -> tuple[list[tuple[Region, Triangles]], list[Uncovered]]:
+) -> tuple[list[tuple[Region, Triangles]], list[LeftOut]]:
     """The meshes that paths are laid on, each with its region, and what of segments is refused."""
     surface = segments.surface
 
-    def allowed(mesh: Triangles, segment: int) -> tuple[list[Triangles], list[Uncovered]]:
+    def allowed(mesh: Triangles, segment: int) -> tuple[list[Triangles], list[LeftOut]]:
         if refusals is None:
             return [mesh], []
         finest, least = _REFUSED * spacing, _LEAST_AREA * spacing**2
@@ -155,13 +156,13 @@ def _parts(
 
 def _better(
     lay: Pattern, part: Triangles, segment: int, spacing: float, deadline: Deadline
-) -> tuple[Line, PathMeasures, list[Uncovered]]:
+) -> tuple[Line, PathMeasures, list[LeftOut]]:
     """The pattern's line, or one along the part with spurs if that visits it less often.
 
     In a part that is hardly wider than the spacing, loops go over most places twice.
     """
 
-    def measured(laid: Laid) -> tuple[Line, PathMeasures, list[Uncovered]]:
+    def measured(laid: Laid) -> tuple[Line, PathMeasures, list[LeftOut]]:
         line = rounded(with_spurs(laid, spacing, deadline), spacing, deadline)
         return line, *measure(line, segment, spacing)
 

@@ -43,8 +43,8 @@ class _Door:
 class _Loop:
     """A closed row of vertices, with the distance along it to each."""
 
-    def __init__(self, mesh: Triangles, row: Index) -> None:
-        self.row = row.tolist()
+    def __init__(self, mesh: Triangles, row: list[int]) -> None:
+        self.row = row
         steps = np.linalg.norm(mesh.points[np.roll(row, -1)] - mesh.points[row], axis=1)
         self.along = np.concatenate([[0.0], np.cumsum(steps)])
         self.length = float(self.along[-1])
@@ -61,11 +61,10 @@ class _Loop:
         a, b = self.place[one], self.place[other]
         if (self.along[b] - self.along[a]) % self.length > self.length / 2:
             a, b = b, a
-        row: list[int] = self.row
-        return row[a : b + 1] if a <= b else row[a:] + row[: b + 1]
+        return self.row[a : b + 1] if a <= b else self.row[a:] + self.row[: b + 1]
 
 
-def join_loops(mesh: Triangles, rows: list[Index], gap: float, deadline: Deadline) -> list[int]:
+def join_loops(mesh: Triangles, rows: list[list[int]], gap: float, deadline: Deadline) -> list[int]:
     """One closed path along all loops, as vertices; the first is the last as well.
 
     Args:

@@ -27,19 +27,8 @@ class Sliced:
     level: Index
 
 
-@dataclass(frozen=True, eq=False)
-class LevelLine:
-    """One connected level line.
-
-    Attributes:
-        level: its level's number.
-        vertices: in order; the first is not repeated at the end of a closed line.
-        closed: whether it closes; otherwise it ends at the mesh's border.
-    """
-
-    level: int
-    vertices: Index
-    closed: bool
+Row = tuple[list[int], bool]
+"""Vertices in order, and whether the row closes; the first is not repeated at the end then."""
 
 
 def slice_along(mesh: Triangles, values: Array, levels: Array) -> Sliced:
@@ -71,8 +60,8 @@ def slice_along(mesh: Triangles, values: Array, levels: Array) -> Sliced:
     return Sliced(finer, np.concatenate([values, levels[number[on]]]), level)
 
 
-def level_lines(sliced: Sliced) -> list[LevelLine]:
-    """All level lines, by their lowest vertex."""
+def level_lines(sliced: Sliced) -> list[Row]:
+    """All connected level lines, by their lowest vertex; one that is open ends at the border."""
     edges = sliced.mesh.edges
     own = edges[(sliced.level[edges] >= 0).all(axis=1)]
     beside: dict[int, list[int]] = {}
@@ -93,8 +82,7 @@ def level_lines(sliced: Sliced) -> list[LevelLine]:
                 break
             row.append(onward[0])
             done.add(onward[0])
-        closed = len(beside[start]) == 2
-        lines.append(LevelLine(int(sliced.level[start]), np.array(row, dtype=np.int64), closed))
+        lines.append((row, len(beside[start]) == 2))
     return lines
 
 

@@ -8,33 +8,12 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, numbered
+from cellcolor.data.trajectory import LeftOut
 from cellcolor.tool_paths.rounding import Line
 from cellcolor.tool_paths.triangles import Triangles
 
 _SAMPLES = 4000  # at which visits are counted, for one path
 _FINE = 8  # samples of the path on each spacing
-
-
-@dataclass(frozen=True, slots=True)
-class Uncovered:
-    """A place that the tool does not come near enough to.
-
-    Attributes:
-        segment: of the painting.
-        area_m2: how large it is.
-        place: a point of it, m.
-        cause: a sentence without its full stop.
-    """
-
-    segment: int
-    area_m2: float
-    place: tuple[float, float, float]
-    cause: str
-
-    def __str__(self) -> str:
-        place = ", ".join(f"{value:.3f}" for value in self.place)
-        area = f"{self.area_m2 * 1e6:.1f} mm²"
-        return f"{area} of segment {self.segment} at ({place}): {self.cause}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +42,7 @@ class PathMeasures:
         return f"{self.length_m:.2f} m, {100 * self.covered:.2f} % covered, {visits}"
 
 
-def measure(line: Line, segment: int, spacing: float) -> tuple[PathMeasures, list[Uncovered]]:
+def measure(line: Line, segment: int, spacing: float) -> tuple[PathMeasures, list[LeftOut]]:
     """Measure a path, and find what it leaves uncovered."""
     mesh = line.mesh
     distances = mesh.distances_from(*_beside(line))
@@ -81,11 +60,11 @@ def measure(line: Line, segment: int, spacing: float) -> tuple[PathMeasures, lis
     for members in mesh.places(distances > 0.75 * spacing):
         farthest = members[distances[members].argmax()]
         left.append(
-            Uncovered(
+            LeftOut(
                 segment,
                 float(areas[members].sum()),
-                tuple(mesh.points[farthest].tolist()),
                 "a tip or core that the pattern does not enter",
+                tuple(mesh.points[farthest].tolist()),
             )
         )
     return measures, left

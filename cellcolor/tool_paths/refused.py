@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Mask
+from cellcolor.data.trajectory import LeftOut
 from cellcolor.mesh.dividing import with_longest_sides
 from cellcolor.mesh.triangle_mesh import grouped
-from cellcolor.tool_paths.measures import Uncovered
 from cellcolor.tool_paths.region import kept_parts
 from cellcolor.tool_paths.triangles import Triangles, split_at
 
@@ -46,7 +46,7 @@ class Refusals(Protocol):
 
 def without_refused(
     mesh: Triangles, segment: int, refusals: Refusals, finest: float, least_area: float
-) -> tuple[list[Triangles], list[Uncovered]]:
+) -> tuple[list[Triangles], list[LeftOut]]:
     """The parts of a mesh that are left, largest first, and what is left out.
 
     A place of what is left out is one where the test has failed, far from all that is not refused.
@@ -93,7 +93,7 @@ def without_refused(
 
 def _places(
     mesh: Triangles, segment: int, why: Codes, codes: Codes, refusals: Refusals
-) -> list[Uncovered]:
+) -> list[LeftOut]:
     """Triangles (m,) that are left out, those that meet and have the same reason as one place."""
     out = np.flatnonzero(why)
     # Triangles are joined over what they share: a corner, for one reason.
@@ -109,7 +109,7 @@ def _places(
         deepest = corners[np.argmax(deep[corners])]
         place = refusals.tested(mesh.points[deepest], mesh.normals[deepest])
         area, reason = float(mesh.areas[members].sum()), refusals.names[why[members[0]]]
-        found.append(Uncovered(segment, area, tuple(place.tolist()), reason))
+        found.append(LeftOut(segment, area, reason, tuple(place.tolist())))
     return found
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
-from cellcolor.registered import find, known_names, load
+from cellcolor.registered import find, load
 
 if TYPE_CHECKING:
     from cellcolor.tool_paths.triangles import Triangles
@@ -45,11 +45,6 @@ PATTERNS = {
     "back-and-forth": "cellcolor.tool_paths.back_and_forth:lay_back_and_forth",
 }
 """This package's own, as ``module:function``."""
-
-
-def pattern_names() -> tuple[str, ...]:
-    """All names, this package's own first; nothing is imported for that."""
-    return known_names(PATTERNS, _GROUP)
 
 
 def find_pattern(name: str) -> Pattern:

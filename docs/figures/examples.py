@@ -14,7 +14,7 @@ from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decomposition_of
 from cellcolor.decomposition.borders import ClosedMesh
-from cellcolor.pictures.surface_pictures import by_solution
+from cellcolor.pictures.surface_pictures import draw_segments
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options
 
@@ -83,7 +83,9 @@ class Example:
 
     def segments(self, division: Solution) -> NDArray[np.int64]:
         """The segment of each point in a division, as ``cellcolor show`` paints it."""
-        return by_solution(self.surface, self.decomposition, division)[1].labels
+        drawn = draw_segments(self.surface, self.decomposition, division)
+        assert drawn.mesh is not None
+        return drawn.mesh.labels
 
     @cached_property
     def edges(self) -> dict[int, Array]:

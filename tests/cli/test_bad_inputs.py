@@ -190,6 +190,7 @@ USAGE = {
     "no time": ["solve", RING, "--time-limit", "0"],
     "endless time": ["solve", RING, "--time-limit", "inf"],
     "time that is not a number": ["solve", RING, "--time-limit", "nan"],
+    "share that is not a number": ["solve", RING, "--cover", "nan"],
     "no workers": ["solve", RING, "--workers", "0"],
     "negative seed": ["solve", RING, "--seed", "-1"],
     "build without output": ["build", str(PAPER / "ring.surface.json")],

@@ -79,10 +79,6 @@ def test_python_refuses_what_does_not_fit() -> None:
         cellcolor.cover(painting, painting.plan, **lengths)
     with pytest.raises(cellcolor.InputError, match="plan: is missing"):
         cellcolor.cover(painting.surface, **lengths)
-    with pytest.raises(cellcolor.InputError, match="normals: has 1 entries"):
-        cellcolor.cover(painting, normals=[[0, 0, 1]], **lengths)
-    with pytest.raises(cellcolor.InputError, match=r"normals\[0\]: has no direction"):
-        cellcolor.cover(painting, normals=0 * painting.surface.vertices, **lengths)
     with pytest.raises(cellcolor.InputError, match="tool_radius_m: must be positive"):
         cellcolor.cover(painting, spacing_m=0.5, tool_radius_m=-1.0)
     with pytest.raises(cellcolor.InputError, match="there is no 'zigzag'; there are contour"):

@@ -45,5 +45,5 @@ def test_usage(arguments: list[str], message: str, tmp_path: Path, capsys: Captu
     capsys.readouterr()
     assert run("show", path, "-o", tmp_path / "x.svg", *arguments) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("cellcolor show: ") and message in line
+    assert line.startswith("cellcolor") and message in line
     assert not (tmp_path / "x.svg").exists()

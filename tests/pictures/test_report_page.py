@@ -21,7 +21,7 @@ from cellcolor.files.writing import HTML
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.pictures.report_page.cards import badges_of, cards_of
 from cellcolor.pictures.report_page.content import MotionReport
-from cellcolor.pictures.report_page.motion_data import frames_of
+from cellcolor.pictures.report_page.motion_data import OFF, OFF_SHARE, frames_of
 from cellcolor.pictures.report_page.page import render_report
 
 HOSTILE = "</script><b>&\"'{{DATA}}"
@@ -282,21 +282,24 @@ def test_the_page_claims_what_is_proved(solution: dict[str, object], expected: s
     assert page.count("optimal: proved for any division") == (0 if solution else 1)
 
 
-@given(st.integers(1, 60), st.integers(2, 50), st.randoms(use_true_random=False))
-def test_frames_keep_the_ends_of_strokes(count: int, most: int, rng: object) -> None:
-    contact = [rng.random() < 0.7 for _ in range(count)]  # type: ignore[attr-defined]
-    joints = np.array([[rng.random(), 0.0] for _ in range(count)])  # type: ignore[attr-defined]
+@given(st.integers(1, 60), st.randoms(use_true_random=False))
+def test_frames_keep_the_ends_of_strokes_and_what_is_not_straight(count: int, rng: Any) -> None:
+    contact = [rng.random() < 0.7 for _ in range(count)]
+    joints = np.cumsum([[rng.choice((0.0, 0.0, 0.01)), 0.0] for _ in range(count)], axis=0)
+    measure = np.cumsum([[rng.choice((0.0, 1.0))] for _ in range(count)], axis=0)
     unplanned = (count - 2,) if count > 1 else ()
     rows = np.zeros((count, 3))
     trajectory = Trajectory(
         "any", ("a", "b"), np.arange(count), joints, rows, rows, contact, [0] * count, unplanned
     )
-    frames = frames_of(trajectory, most)
+    frames = frames_of(trajectory, measure)
     assert (np.diff(frames) > 0).all()
     wanted = {0, count - 1, *unplanned, *(sample + 1 for sample in unplanned)}
     wanted |= {end for first, after in trajectory.strokes for end in (first, after - 1)}
     assert wanted <= set(frames.tolist())
-    assert len(frames) <= max(most, 0) + len(wanted)
+    for values, off in ((joints[:, 0], OFF), (measure[:, 0], OFF_SHARE * np.ptp(measure))):
+        drawn = np.interp(np.arange(count), frames, values[frames])
+        assert np.abs(drawn - values).max() <= off + 1e-9
 
 
 def test_badges_count_against_the_proof() -> None:

@@ -11,7 +11,6 @@ from meshes import drawn
 
 import cellcolor
 from cellcolor.data.instance import Instance
-from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, RefusedResult
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options
@@ -46,12 +45,6 @@ def test_refused(options: dict[str, Any], field: str, message: str) -> None:
         Options(**options)
     assert refusal.value.field == field
     assert message in refusal.value.message
-
-
-def test_time_that_is_no_number() -> None:
-    for make in (lambda: Deadline.after(math.nan), lambda: Deadline(math.nan)):
-        with pytest.raises(InputError, match="time_limit: is not a number of seconds"):
-            make()
 
 
 @pytest.mark.parametrize("options", [{"strands": 0}, {"workers": 0}, {"seed": -1}])

@@ -34,6 +34,7 @@ from cellcolor.lab.families.meshes import grid_faces, make_mesh
 from cellcolor.lab.families.surfaces import voronoi
 from cellcolor.painting.paint import Painted, paint
 from cellcolor.tool_paths.region import Segments
+from cellcolor.tool_paths.triangles import Triangles
 
 
 def random_seams(instance: Instance, strands: int, rng: random.Random) -> tuple[Seam, ...]:
@@ -145,6 +146,15 @@ def random_solution(instance: Instance, strands: int, rng: random.Random) -> Sol
         InstanceReference(instance.name, instance.sha256), "surface", strands, "by chance",
         "feasible", segments, max(0, segments - 1), 0, 0, False, seams, division, 0.0,
     )  # fmt: skip
+
+
+def flat_grid(rows: int, columns: int, step: float) -> Triangles:
+    """A flat grid of squares, each cut in two, seen from above."""
+    y, x = np.mgrid[0:rows, 0:columns] * step
+    points = np.stack([x.ravel(), y.ravel(), np.zeros(rows * columns)], axis=1)
+    up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
+    faces = grid_faces(rows, columns)
+    return Triangles(points, faces, up, np.arange(len(faces)))
 
 
 def mean_cost(painted: Painted, cost: np.ndarray) -> float:

@@ -63,8 +63,8 @@ def test_a_sheet_is_what_its_numbers_say() -> None:
 )
 def test_what_fails_is_made_small(wanted: Callable[[LabelledSurface], bool]) -> None:
     """Two by two vertices are the fewest, and enough for all of these."""
-    few = settings(max_examples=100, deadline=None)
-    assert len(find(labelled_surfaces(largest=6), wanted, settings=few).vertices) == 4
+    many = settings(max_examples=1000, deadline=None)
+    assert len(find(labelled_surfaces(largest=6), wanted, settings=many).vertices) == 4
 
 
 ROW = sheet(4, 2, [[(0, 0, 2, 1)], [(1, 0, 1, 1)]])

@@ -22,7 +22,7 @@ from cellcolor.lab.families.meshes import grid_faces
 from cellcolor.mesh.dividing import small_areas
 from cellcolor.tool_paths.cover import Covered, check_spacing, cover
 from cellcolor.tool_paths.region import Segments, regions_of
-from cellcolor.tool_paths.registry import PATTERNS, pattern_names
+from cellcolor.tool_paths.registry import PATTERNS
 from examples import examples
 
 pytestmark = pytest.mark.second
@@ -132,9 +132,9 @@ def test_walls_and_what_is_refused_are_kept_off(
         assert not checker.problems(path)
         assert refusals.depths(path.points).max(initial=0) < finest / 2
     # What is left out is the discs and a rim of one small triangle, and states a place in one.
-    out = [place for place in found.uncovered if place.cause == "in a disc"]
+    out = [place for place in found.uncovered if place.reason == "in a disc"]
     left = sum(region.mesh.areas.sum() for region in regions_of(painting, walls))
-    small = [place for place in found.uncovered if place.cause.startswith("a part smaller")]
+    small = [place for place in found.uncovered if place.reason.startswith("a part smaller")]
     parts = found.in_all.area_m2 + sum(place.area_m2 for place in (*out, *small))
     assert parts == pytest.approx(left)
     if out:
@@ -169,7 +169,7 @@ def test_a_small_segment_beside_a_large_one_is_no_fault_of_the_spacing() -> None
     both = painting._replace(segment_of=segment_of, colors=[0, 0])
     found = covered(both, "contour", 0.3)
     assert [path.segment for path in found.paths.paths] == [0]
-    small = [place for place in found.uncovered if place.cause.startswith("a part smaller")]
+    small = [place for place in found.uncovered if place.reason.startswith("a part smaller")]
     assert [place.segment for place in small] == [1]
     alone = both._replace(segment_of=np.where(segment_of == 1, 1, -1))
     assert covered(alone, "contour", 0.3).paths.paths == ()
@@ -237,7 +237,6 @@ def test_what_another_distribution_registers_is_used(
         "[cellcolor.patterns]\none-line = one_line:lay\nbroken = one_line:nothing\n"
     )
     monkeypatch.syspath_prepend(str(tmp_path))
-    assert pattern_names()[-2:] == ("broken", "one-line")
     painting = square(6)
     found = covered(painting, "one-line", 0.5)
     # What it leaves uncovered is reached by spurs.

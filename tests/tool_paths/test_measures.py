@@ -6,23 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from painted import slit, square
+from painted import flat_grid, slit, square
 
-from cellcolor.lab.families.meshes import grid_faces
 from cellcolor.tool_paths.measures import measure
 from cellcolor.tool_paths.region import regions_of
 from cellcolor.tool_paths.registry import Laid
 from cellcolor.tool_paths.rounding import line_of
 from cellcolor.tool_paths.triangles import Triangles
-
-
-def grid(rows: int, columns: int, step: float) -> Triangles:
-    """A flat grid of squares, each cut in two."""
-    y, x = np.mgrid[0:rows, 0:columns] * step
-    points = np.stack([x.ravel(), y.ravel(), np.zeros(rows * columns)], axis=1)
-    up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
-    faces = grid_faces(rows, columns)
-    return Triangles(points, faces, up, np.arange(len(faces)))
 
 
 def lines(rows: range, columns: int) -> list[int]:
@@ -39,7 +29,7 @@ def lines(rows: range, columns: int) -> list[int]:
 
 def test_parallel_lines_pass_once() -> None:
     # 1 m wide, 41 rows: lines at 0.05 m, 0.15 m, … with a spacing of 0.1 m.
-    laid = Laid(grid(41, 161, 0.025), lines(range(2, 40, 4), 161))
+    laid = Laid(flat_grid(41, 161, 0.025), lines(range(2, 40, 4), 161))
     found, left = measure(line_of(laid), 0, 0.1)
     assert found.area_m2 == pytest.approx(4.0) and found.border_m == pytest.approx(10.0)
     assert found.length_m == pytest.approx(10 * 4.0 + 9 * 0.1)
@@ -49,7 +39,7 @@ def test_parallel_lines_pass_once() -> None:
 
 
 def test_one_line_covers_a_strip() -> None:
-    laid = Laid(grid(41, 161, 0.025), lines(range(20, 21), 161))
+    laid = Laid(flat_grid(41, 161, 0.025), lines(range(20, 21), 161))
     found, left = measure(line_of(laid), 0, 0.1)
     # Of a metre across it has 0.15 m and 0.075 m on either side.
     assert found.covered_wide == pytest.approx(0.3, abs=1e-6)
@@ -80,7 +70,7 @@ def test_the_far_side_of_a_slit_is_not_covered() -> None:
 def test_the_back_of_a_sheet_is_not_covered() -> None:
     """Two sheets 1 mm apart, joined along one side, and a path on one of them."""
     rows, columns, step = 21, 41, 0.05
-    front = grid(rows, columns, step)
+    front = flat_grid(rows, columns, step)
     back = front.points[:, :] * (1.0, 1.0, 0.0) + (0.0, 0.0, -0.001)
     points = np.vstack([front.points, back])
     up = front.normals

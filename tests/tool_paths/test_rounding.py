@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from painted import flat_grid
 from scipy.sparse.csgraph import dijkstra
 
+from cellcolor.arrays import unit
 from cellcolor.deadline import NEVER
 from cellcolor.tool_paths.registry import Laid
 from cellcolor.tool_paths.rounding import Line, line_of, rounded
@@ -22,23 +25,17 @@ BELL = 0.3 * SPACING
 
 def sheet(size: int, seed: int | None = None) -> Triangles:
     """A unit square; with a seed its inner vertices are moved, and it is bent smoothly."""
-    x, y = (rows.ravel() for rows in np.meshgrid(*[np.linspace(0, 1, size)] * 2))
-    points = np.stack([x, y, np.zeros_like(x)], axis=1)
-    if seed is not None:
-        inside = (np.minimum(x, y) > 0) & (np.maximum(x, y) < 1)
-        noise = np.random.default_rng(seed).uniform(-0.3, 0.3, (len(x), 2)) / size
-        points[inside, :2] += noise[inside]
-        points[:, 2] = 0.05 * np.sin(3 * points[:, 0]) * np.sin(4 * points[:, 1])
-    first = np.array([row * size + column for row in range(size - 1) for column in range(size - 1)])
-    lower = np.stack([first, first + 1, first + size + 1], axis=1)
-    upper = np.stack([first, first + size + 1, first + size], axis=1)
-    corners = np.concatenate([lower, upper])
-    a, b, c = (points[corners[:, k]] for k in range(3))
+    flat = flat_grid(size, size, 1 / (size - 1))
+    if seed is None:
+        return flat
+    points, inside = flat.points.copy(), ~flat.border
+    noise = np.random.default_rng(seed).uniform(-0.3, 0.3, (len(points), 2)) / size
+    points[inside, :2] += noise[inside]
+    points[:, 2] = 0.05 * np.sin(3 * points[:, 0]) * np.sin(4 * points[:, 1])
+    bent = replace(flat, points=points)
     normals = np.zeros_like(points)
-    for k in range(3):
-        np.add.at(normals, corners[:, k], np.cross(b - a, c - a))
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    return Triangles(points, corners, normals, np.arange(len(corners)))
+    np.add.at(normals, bent.corners, bent.area_vectors[:, None])
+    return replace(bent, normals=unit(normals))
 
 
 def assert_on_mesh(line: Line) -> None:

@@ -5,33 +5,19 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
+from painted import flat_grid
 from scipy.spatial import cKDTree
 
 from cellcolor.deadline import NEVER
 from cellcolor.tool_paths.registry import Laid
 from cellcolor.tool_paths.spurs import with_spurs
-from cellcolor.tool_paths.triangles import Triangles
 from examples import examples
 
 SPACING = 0.1
 SIZE = 101  # vertices on a side of the square; they are a tenth of the spacing apart
 
 
-def sheet() -> Triangles:
-    """A flat unit square; each small square is cut along its diagonal from lower left."""
-    x, y = (rows.ravel() for rows in np.meshgrid(*[np.linspace(0, 1, SIZE)] * 2))
-    points = np.stack([x, y, np.zeros_like(x)], axis=1)
-    across = range(SIZE - 1)
-    first = np.array([row * SIZE + column for row in across for column in across])
-    lower = np.stack([first, first + 1, first + SIZE + 1], axis=1)
-    upper = np.stack([first, first + SIZE + 1, first + SIZE], axis=1)
-    corners = np.concatenate([lower, upper])
-    return Triangles(
-        points, corners, np.tile([0.0, 0.0, 1.0], (len(x), 1)), np.arange(len(corners))
-    )
-
-
-SHEET = sheet()
+SHEET = flat_grid(SIZE, SIZE, 1 / (SIZE - 1))
 
 
 def back_and_forth(rows: list[int]) -> list[int]:

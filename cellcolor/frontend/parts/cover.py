@@ -89,12 +89,6 @@ def facing(mesh: TriangleMesh, faces: Mask | slice = slice(None)) -> Array:
     return np.asarray(mesh.area_vectors[faces].sum(axis=0) / 2 / area)
 
 
-def inner_point(mesh: TriangleMesh, faces: Mask) -> Array:
-    """The middle (3,) of the largest of some faces."""
-    own: Index = np.flatnonzero(faces)
-    return np.asarray(mesh.points[mesh.corners[own[np.argmax(mesh.areas[own])]]].mean(axis=0))
-
-
 def note_on_shell(surface: Surface) -> tuple[str, ...]:
     """A sentence if a tool has to cover both sides of something thin."""
     thick = thickness(surface.mesh if surface.divided is None else surface.divided[0])

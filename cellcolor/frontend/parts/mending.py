@@ -24,16 +24,6 @@ _APART = 0.01  # of the shortest side beside a copy of a vertex
 _UPRIGHT = 1e-3  # unit normals around a vertex whose mean is shorter nearly cancel out
 
 
-def merged(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
-    """For vertices in one place, within 1e-8 of the mesh's size, the first of them."""
-    size = float(np.ptp(vertices, axis=0).max(initial=0.0)) if len(vertices) else 0.0
-    if not size:
-        return vertices, faces
-    place = np.rint((vertices - vertices.min(axis=0)) / (_SAME * size)).astype(np.int64)
-    _, first, group = np.unique(place, axis=0, return_index=True, return_inverse=True)
-    return used(vertices, first[group.ravel()][faces])
-
-
 def used(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
     """Only the vertices that faces have, in their order."""
     there, number = np.unique(faces, return_inverse=True)
@@ -69,7 +59,12 @@ def cleaned(vertices: Array, faces: Faces) -> Cleaned:
         InputError: no face is left.
     """
     there = len(np.unique(faces))
-    points, corners = merged(vertices, faces)
+    points, corners = vertices, faces
+    size = float(np.ptp(vertices, axis=0).max(initial=0.0)) if len(vertices) else 0.0
+    if size:
+        place = np.rint((vertices - vertices.min(axis=0)) / (_SAME * size)).astype(np.int64)
+        _, first, group = np.unique(place, axis=0, return_index=True, return_inverse=True)
+        points, corners = used(vertices, first[group.ravel()][faces])
     folded = repeated_corners(corners)
     corners = corners[~folded]
     twice = repeated_faces(corners)

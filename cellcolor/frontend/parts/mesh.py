@@ -63,7 +63,11 @@ def mesh_surface(
     if mend and len(faces) and np.isfinite(vertices).all():
         # Sizes first: a triangle that is far too long for a unit looks like one without area.
         _check_size(vertices[np.unique(faces)], meters_per_unit)
-        vertices, faces = _repaired(vertices, faces)
+        clean = cleaned(vertices, faces)
+        refuse_gaps(clean.vertices, clean.faces, clean.flat)
+        vertices, faces = used(clean.vertices, clean.faces)
+        faces = turned(faces, against_the_others(faces)[0])
+        faces = turned(faces, inside_out(TriangleMesh(vertices, faces)))
     if not len(faces):
         raise InputError(None, "faces", "there are none")
     _check_size(vertices, meters_per_unit)
@@ -107,14 +111,6 @@ def mesh_surface(
     normals /= size
     points = mesh.points * meters_per_unit
     return Surface(points, mesh.corners, normals, faceted=True, divided=divided)
-
-
-def _repaired(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
-    clean = cleaned(vertices, faces)
-    refuse_gaps(clean.vertices, clean.faces, clean.flat)
-    vertices, faces = used(clean.vertices, clean.faces)
-    faces = turned(faces, against_the_others(faces)[0])
-    return vertices, turned(faces, inside_out(TriangleMesh(vertices, faces)))
 
 
 def _check_size(vertices: Array, meters_per_unit: float) -> None:

@@ -167,7 +167,14 @@ def mended(
         InputError: coordinates that are not finite, a face of no vertex, too many faces, nothing
             left; flat faces between others, a component without an outside; names the place.
     """
-    _check(vertices, faces)
+    bad = np.argwhere(~np.isfinite(vertices))
+    if len(bad):
+        row, axis = bad[0]
+        raise InputError(None, f"vertices[{row}][{axis}]", "is not a finite number")
+    check_corners(faces, len(vertices))
+    if not 0 < len(faces) <= MOST_FACES:
+        there = f"there are {len(faces):,}, at most {MOST_FACES:,} fit"
+        raise InputError(None, "faces", there if len(faces) else "there are none")
     changes: list[str] = []
 
     def step(name: str) -> None:
@@ -226,18 +233,6 @@ def mended(
     parts = len(np.unique(mesh.parts()[wrong]))
     note(parts, "closed component", f"turned outside out: {count(int(wrong.sum()), 'face')}")
     return vertices, turned(faces, wrong), changes
-
-
-def _check(vertices: Array, faces: Faces) -> None:
-    bad = np.argwhere(~np.isfinite(vertices))
-    if len(bad):
-        row, axis = bad[0]
-        raise InputError(None, f"vertices[{row}][{axis}]", "is not a finite number")
-    check_corners(faces, len(vertices))
-    if not len(faces):
-        raise InputError(None, "faces", "there are none")
-    if len(faces) > MOST_FACES:
-        raise InputError(None, "faces", f"there are {len(faces):,}, at most {MOST_FACES:,} fit")
 
 
 def counted(number: int, one: str) -> str:

@@ -128,27 +128,20 @@ def prepare_arm(setup: Setup) -> PreparedArm:
     with naming(setup.file):
         family = KINEMATICS.find(setup.robot.kinematics, "robot.kinematics")
         robot = _robot(setup, family)
-        kinematics = _kinematics(setup, robot, family)
+        turn = setup.task.turn
+        if turn is None:
+            kinematics = family(robot, setup.robot)
+        else:
+            kinematics = TurnedKinematics(family, robot, setup.robot, turn)
+        if family.prismatic and not kinematics.branches:
+            why = "with a prismatic joint that moves the solutions of an arm need names (branches)"
+            raise InputError(None, "robot.kinematics", why)
         reach = float(f"{kinematics.reach:.4g}")
         if kinematics.reach > _LONGEST:
             message = f"the arm reaches {reach} m: {looks_like_millimeters(reach)}"
             raise InputError(str(robot.files[0]), "robot", message)
         limits = conditioning(setup, kinematics.reach, robot)
     return PreparedArm(setup, robot, kinematics, limits)
-
-
-def _kinematics(setup: Setup, robot: Robot, family: type[InverseKinematics]) -> InverseKinematics:
-    """The arm's inverse kinematics for the task of its setup."""
-    turn = setup.task.turn
-    kinematics = (
-        family(robot, setup.robot)
-        if turn is None
-        else TurnedKinematics(family, robot, setup.robot, turn)
-    )
-    if family.prismatic and not kinematics.branches:
-        message = "with a prismatic joint that moves the solutions of an arm need names (branches)"
-        raise InputError(None, "robot.kinematics", message)
-    return kinematics
 
 
 def _robot(setup: Setup, family: type[InverseKinematics]) -> Robot:

@@ -5,18 +5,9 @@ without names". In standard terms, solutions are the points of a covering of the
 lifts of mesh edges by continuation (path tracking), and a sheet is a sheet of the covering, or
 several pieces of one.
 
-1. :class:`Followed` matches all solutions at both ends of a mesh edge, as configurations without a
-   robot are matched (:mod:`cellcolor.configurations.matching`). What is left over at both ends is
-   followed along the edge in small steps, from either end, and is linked if both ways agree.
-2. :func:`sheets_of` finds the components of linked solutions. It refuses one that has two solutions
-   of a vertex: the arm is cuspidal there.
-3. Components are put into sheets, largest first, each into the first sheet where it fits: first
-   fit, as in greedy coloring of a graph. Two that share a vertex, or have vertices next to each
-   other, are in different sheets.
-4. Solutions that are not valid fill free places, so that each has a reason somewhere.
-
-Packing c components into t sheets looks at each solution t times at most; ``MOST_SHEETS`` bounds t
-afterwards only.
+:class:`Followed` links solutions, :func:`sheets_of` puts the components of linked ones into sheets,
+largest first, each into the first sheet where it fits (greedy coloring). Solutions that are not
+valid fill free places, so that each has a reason somewhere.
 """
 
 from __future__ import annotations
@@ -162,6 +153,8 @@ _SAME_PLACE = 1e-9  # m
 class Followed(Matching):
     """Links solutions that a continuous motion along a mesh edge joins.
 
+    What is left over at both ends, once clear pairs are matched, is followed along the edge in
+    small steps from either end, and linked if both ways agree.
     Solutions of different signs of the task determinant have a singularity between them: the sign
     is their name.
 

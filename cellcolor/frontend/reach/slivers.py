@@ -19,7 +19,7 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.frontend.reach.continuity import Coloring
+from cellcolor.frontend.reach.colors import Coloring
 from cellcolor.frontend.setup import Slivers
 from cellcolor.mesh.triangle_mesh import grouped
 from cellcolor.union_find import UnionFind

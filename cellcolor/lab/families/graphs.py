@@ -11,7 +11,6 @@ from collections.abc import Sequence
 
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.instance import Instance, KnownResult, KnownResults
-from cellcolor.errors import InputError
 
 
 def planar_graph(
@@ -26,12 +25,7 @@ def planar_graph(
     Args:
         edges: between cells, at least ``cells - 1``.
         self_edges: whether a cell may lie on both sides of an edge.
-
-    Raises:
-        InputError: too few cells, edges or colors.
     """
-    if cells < 1 or colors < 1 or edges < cells - 1:
-        raise InputError(None, None, f"no graph has {cells} cells, {edges} edges, {colors} colors")
     rng = random.Random(f"planar {seed} {cells} {edges} {colors} {self_edges}")
     sets = [tuple(sorted(rng.sample(range(colors), rng.randint(1, colors)))) for _ in range(cells)]
     rotation = _Rotation()
@@ -99,21 +93,11 @@ class _Rotation:
         return (self._cell[one], one), (self._cell[other], other)
 
 
-def _require(possible: bool, wanted: str) -> None:
-    if not possible:
-        raise InputError(None, None, f"no {wanted}")
-
-
 def hub(seed: int, petals: int, colors: int) -> Instance:
     """One cell with all colors, ringed by single-colored cells, no two equal neighbors.
 
     Its minimum is known (:func:`hub_minimum`) and bounds that count colors say nothing about it.
-
-    Raises:
-        InputError: there is no such hub; two colors do not suffice for an odd number of petals.
     """
-    possible = petals > 1 and colors > (2 if petals % 2 else 1)
-    _require(possible, f"hub has {petals} petals in {colors} colors")
     rng = random.Random(f"hub {seed} {petals} {colors}")
     ring = _ring(rng, petals, colors)
     known = KnownResults(paper=KnownResult(hub_minimum(ring)))
@@ -121,13 +105,7 @@ def hub(seed: int, petals: int, colors: int) -> Instance:
 
 
 def hub_with_loops(seed: int, loops: int, petals: int, colors: int) -> Instance:
-    """A hub with a ring of so many petals round each of its several loops.
-
-    Raises:
-        InputError: there is no such hub.
-    """
-    possible = loops > 0 and petals > 1 and colors > (2 if petals % 2 else 1)
-    _require(possible, f"hub has {loops} loops of {petals} petals in {colors} colors")
+    """A hub with a ring of so many petals round each of its several loops."""
     rng = random.Random(f"hub with loops {seed} {loops} {petals} {colors}")
     rings = [[(color,) for color in _ring(rng, petals, colors)] for _ in range(loops)]
     return _hub(f"hub_{seed}_{loops}x{petals}", rings, colors)
@@ -135,6 +113,7 @@ def hub_with_loops(seed: int, loops: int, petals: int, colors: int) -> Instance:
 
 def _ring(rng: random.Random, petals: int, colors: int) -> list[int]:
     """Random colors of a ring of petals, no two successive ones equal."""
+    assert petals > 1 and colors > (2 if petals % 2 else 1)  # there is no other ring
     while True:
         ring = [rng.randrange(colors)]
         while len(ring) < petals:
@@ -197,12 +176,7 @@ def hub_grid(seed: int, rows: int, columns: int, colors: int, side: int = 2) -> 
     A hub is a square cell with all colors and ``side`` single-colored petals on each of its four
     sides. A petal between two hubs has a live edge to both, one at the rim of the grid to one; no
     two successive petals of a side are equal. What lies between four hubs is unreachable.
-
-    Raises:
-        InputError: there is no such grid.
     """
-    possible = rows > 0 and columns > 0 and colors > 1 and side > 0
-    _require(possible, f"grid has {rows} x {columns} hubs, {side} petals a side, {colors} colors")
     rng = random.Random(f"hub grid {seed} {rows} {columns} {colors} {side}")
     sets: list[tuple[int, ...]] = [tuple(range(colors))] * (rows * columns)
     loops: list[tuple[int, ...]] = [()] * (rows * columns)

@@ -9,7 +9,6 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index
 from cellcolor.data.surface import Crack
-from cellcolor.errors import InputError
 
 Mesh = tuple[Array, Index]
 """Vertices, (n, 3) in metres, and faces, (m, 3), counter-clockwise seen from outside."""
@@ -19,17 +18,12 @@ Topology = Literal["disc", "annulus", "sphere", "torus", "double torus"]
 SHAPES: tuple[Topology, ...] = get_args(Topology)
 """All of them."""
 
-LEAST_SIZE = 6
-
 
 def make_mesh(shape: Topology, size: int) -> Mesh:
     """A mesh of a shape with ``size`` squared vertices or nearly, 1 to 3 m wide.
 
-    Raises:
-        InputError: a size below 6, where some shapes are not manifold.
+    Below a size of 6 some shapes are not manifold.
     """
-    if size < LEAST_SIZE:
-        raise InputError(None, None, f"a mesh needs a size of {LEAST_SIZE} or more (is {size})")
     if shape == "disc":
         y, x = np.mgrid[0:size, 0:size] / (size - 1)
         return _points(x, y, np.zeros_like(x)), grid_faces(size, size)

@@ -8,7 +8,6 @@ import numpy as np
 
 from cellcolor.arrays import Array
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.errors import InputError
 from cellcolor.lab.families.meshes import Topology, crack_paths, grid_faces, make_mesh
 from cellcolor.mesh.triangle_mesh import directed_edges
 
@@ -42,14 +41,8 @@ def voronoi(
         coverage: the least and the largest share of the regions that a color reaches.
         cracks: random paths over the mesh that the colors common to both sides do not cross.
         islands: small discs that only one color reaches; holes are such that none does.
-
-    Raises:
-        InputError: a size below 6, no regions, more regions than vertices, or no colors.
     """
     vertices, faces = make_mesh(shape, size)
-    if not 1 <= regions <= len(vertices) or colors < 1:
-        wanted = f"{regions} regions, {colors} colors"
-        raise InputError(None, None, f"{len(vertices)} vertices cannot have {wanted}")
     rng = np.random.default_rng([seed, size, regions, colors])
     third = directed_edges(faces, len(vertices))  # the third vertex of the triangle left of (a, b)
     neighbors: list[list[int]] = [[] for _ in vertices]
@@ -231,12 +224,7 @@ def blobs(
         rim: discs on the border of the grid that only one color reaches. With a large coverage
             they make the cell in their middle one that has to be cut.
         islands: such discs anywhere; holes are discs that no color reaches.
-
-    Raises:
-        InputError: a size below 2 or no colors.
     """
-    if size < 2 or colors < 1:
-        raise InputError(None, None, f"blobs need a size of 2 or more (is {size}) and a color")
     rng = np.random.default_rng([seed, size, colors])
     y, x = np.mgrid[0:size, 0:size]
     reached = np.zeros((colors, size, size), dtype=bool)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-
 import numpy as np
 
 from cellcolor.data.bounds import Bound, kind_of
@@ -295,20 +293,16 @@ def _programs(report: MotionReport) -> Card | None:
 
 def _left_out(report: MotionReport) -> Card | None:
     """What the tool does not go to, by cause."""
-    areas: dict[tuple[int, str], list[float]] = defaultdict(list)
-    largest: dict[tuple[int, str], tuple[float, tuple[float, float, float]]] = {}
-    for part in report.trajectory.left_out if report.trajectory is not None else ():
-        key = (part.segment, part.reason)
-        areas[key].append(part.area_m2)
-        largest[key] = max(largest.get(key, (0.0, part.place)), (part.area_m2, part.place))
-    if not areas:
+    parts = () if report.trajectory is None else report.trajectory.left_out
+    if not parts:
         return None
-    rows = [
-        (str(segment), reason, str(len(own)), f"{1e4 * sum(own):.2f} cm²", _place(largest[key][1]))
-        for key, own in sorted(areas.items())
-        for segment, reason in [key]
-    ]
-    whole = 1e4 * sum(map(sum, areas.values()))
+    rows = []
+    for segment, reason in sorted({(part.segment, part.reason) for part in parts}):
+        own = [part for part in parts if (part.segment, part.reason) == (segment, reason)]
+        area, largest = sum(part.area_m2 for part in own), max(own, key=lambda part: part.area_m2)
+        place = _place(largest.place)
+        rows.append((str(segment), reason, str(len(own)), f"{1e4 * area:.2f} cm²", place))
+    whole = 1e4 * sum(part.area_m2 for part in parts)
     text = (
         f"Parts of segments that the tool does not reach, {whole:.2f} cm² in all; red rings mark "
         "the largest."

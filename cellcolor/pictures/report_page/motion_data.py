@@ -16,6 +16,7 @@ from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import Fault
 from cellcolor.decomposition import Decomposition
+from cellcolor.exports.samples import via_points
 from cellcolor.frontend.arm.kinematics import (
     forward,
     manipulability,
@@ -101,7 +102,9 @@ def _front_view(
     return with_shares(surface, point.in_short, labels, classes)
 
 
-_MOST_FRAMES = 4000
+OFF, OFF_M, OFF_SHARE = 2e-3, 2e-4, 0.01
+"""How far samples that are not drawn may be off: joints in rad or m, the tip in m, and measures as
+a share of their range."""
 _MOST_MARKS, _MOST_DOTS = 40, 12  # of faults, and of left-out places
 _STOPS = 20  # at which the part beside the tool is to be seen
 _CONTACT = "#00508F"
@@ -174,16 +177,17 @@ def _motion(
     prepared: PreparedScene, trajectory: Trajectory, faults: Sequence[Fault], lift: float
 ) -> dict[str, Any]:
     """The frames of a trajectory, the arm's kinematics, and what its joints are held to."""
-    robot, frames = prepared.robot, frames_of(trajectory, _MOST_FRAMES)
+    robot = prepared.robot
     poses = forward(robot, trajectory.joints)
     linear, angular = tip_jacobian(poses)
-    contact = trajectory.contact[frames]
-    states = (contact & np.append(contact[1:], contact[-1])).astype(np.uint8)
-    states[np.isin(frames, trajectory.unplanned)] = 2
     measures = {
         "determinant": task_determinant(linear, angular, poses.tool_axis, robot.task),
         "manipulability": manipulability(linear, robot.task),
     }
+    frames = frames_of(trajectory, np.column_stack([*measures.values()]))
+    contact = trajectory.contact[frames]
+    states = (contact & np.append(contact[1:], contact[-1])).astype(np.uint8)
+    states[np.isin(frames, trajectory.unplanned)] = 2
     places = trajectory.points + lift * trajectory.normals
     return {
         "arm": _kinematics(robot),
@@ -251,37 +255,16 @@ def _marks(
     return marks
 
 
-def frames_of(trajectory: Trajectory, most: int) -> Index:
-    """The samples to draw, ascending, evenly spread over the travel of the joints.
+def frames_of(trajectory: Trajectory, measures: Array) -> Index:
+    """The samples to draw, ascending: all between two of them are nearly on a line over time.
 
-    Time has a small weight as well, so that there are samples where the joints rest, and so do
-    turns of the tip's path, so that its corners stay. The ends of strokes and of moves that were
-    not planned are always included.
+    The ends of strokes and of moves that were not planned are always included.
 
     Args:
-        trajectory: one sample or more.
-        most: the most samples, not counting these ends.
+        measures: (k, m) what charts show beside the joints.
     """
-    count = len(trajectory.times)
-    if count <= most:
-        return np.arange(count)
     inside = [end for first, after in trajectory.strokes for end in (first, after - 1)]
     inside += [end for sample in trajectory.unplanned for end in (sample, sample + 1)]
-    ends = np.array([0, count - 1, *inside], dtype=np.int64)
-    travel = np.abs(np.diff(trajectory.joints, axis=0)).max(axis=1)
-    turn = _turns(trajectory.points)
-    steps = sum(
-        weight * own / (own.sum() or 1.0)
-        for weight, own in ((1.0, travel), (0.2, np.diff(trajectory.times)), (1.0, turn))
-    )
-    along = np.concatenate([[0.0], np.cumsum(steps)])
-    even = np.searchsorted(along, np.linspace(0, along[-1], most))
-    return np.unique(np.concatenate([ends, np.minimum(even, count - 1)]))
-
-
-def _turns(points: Array) -> Array:
-    """By how much a polyline (k, 3) turns at the end of each of its k - 1 pieces, rad."""
-    way = np.diff(points, axis=0)
-    way /= np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-12)
-    cosine = np.clip((way[:-1] * way[1:]).sum(axis=1), -1, 1)
-    return np.append(np.arccos(cosine), 0.0)
+    spans = np.maximum(np.ptp(measures, axis=0), 1e-12)
+    asked = trajectory.joints / OFF, trajectory.points / OFF_M, measures / (OFF_SHARE * spans)
+    return via_points(trajectory.times, np.column_stack(asked), np.array(inside, dtype=np.int64))

@@ -15,13 +15,10 @@ from cellcolor.configurations.matching import farthest
 from cellcolor.data.surface import Crack
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.links import link
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.reach.continuity import (
-    Coloring,
-    color_nodes,
-    link,
-)
+from cellcolor.frontend.reach.colors import Coloring, color_nodes
 from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.validity_tests import Verdicts
 from cellcolor.frontend.setup import Continuity

@@ -16,8 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.arrays import Array, Index
-from cellcolor.frontend.reach.continuity import Coloring
-from cellcolor.frontend.reach.limit_colors import LimitColors, limit_colors
+from cellcolor.frontend.reach.colors import Coloring, LimitColors, limit_colors
 
 CIRCLE = 2 * pi
 

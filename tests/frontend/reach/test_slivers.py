@@ -12,7 +12,7 @@ from cellcolor.arrays import Array
 from cellcolor.decomposition import decompose
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.parts.shapes import RectangleObject
-from cellcolor.frontend.reach.continuity import Coloring, color_nodes
+from cellcolor.frontend.reach.colors import Coloring, color_nodes
 from cellcolor.frontend.reach.slivers import SliverReport, _cells, clean
 from cellcolor.frontend.setup import Slivers
 from examples import examples

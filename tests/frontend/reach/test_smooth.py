@@ -10,8 +10,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from cellcolor.arrays import Array
+from cellcolor.frontend.links import link
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.reach.continuity import link
 from cellcolor.frontend.reach.smooth import Measure, Motions, Probe, follow_edges
 from cellcolor.frontend.reach.validity_tests import Verdicts
 from cellcolor.frontend.setup import Continuity

@@ -1,9 +1,15 @@
-"""Colors that keep the joint limits by themselves (``docs/frontend.md``, "Turns").
+"""From valid configurations to colors and cracks (``docs/frontend.md``, "Continuity", "Turns").
 
-Nodes are vertices with a position of each joint inside its limits, and the components of linked
-nodes are the colors. Of a component that comes back to a vertex turned by a full circle, a window
-of one circle gives each vertex one position, and where neighbors disagree there is a crack. If the
-joint has two full circles, once around fits in wherever a segment begins: the color stays whole.
+A node is a valid configuration: a vertex and a branch. Nodes on the ends of a mesh edge are linked
+where their branch leads from one to the other (:mod:`cellcolor.frontend.links`). Colors are the
+connected components of linked nodes; a mesh edge whose ends have a color in common but are not
+linked in it is a crack of that color.
+
+The colors of a surface keep the joint limits by themselves. Their nodes are vertices with a
+position of each joint inside its limits. Of a component that comes back to a vertex turned by a
+full circle, a window of one circle gives each vertex one position, and where neighbors disagree
+there is a crack. If the joint has two full circles, once around fits in wherever a segment begins:
+the color stays whole.
 """
 
 from __future__ import annotations
@@ -16,9 +22,9 @@ from itertools import islice, product
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
+from cellcolor.configurations.components import components_of
 from cellcolor.data.surface import Crack
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.mesh.triangle_mesh import grouped
 
 _CIRCLE = 2 * np.pi
@@ -26,6 +32,65 @@ _ROUNDING = 1e-9  # rad; an angle on its limit is inside
 _MARGIN = 0.02  # rad; between two vertices a joint may go a little beyond both
 _ENOUGH = 2 * _CIRCLE - _ROUNDING  # rad; positions over one circle fit in, wherever they begin
 _MOST = 64  # combinations of the joints' parts of one color
+
+
+@dataclass(frozen=True, eq=False)
+class Coloring:
+    """Colors of all nodes.
+
+    Attributes:
+        names: of the colors: the branch, with a number where it has several components.
+        branch: of each color.
+        node_color: (n, branches) the color of each valid configuration, -1 for others.
+        linked: (edges, branches) along which mesh edges each branch leads.
+        cracks: the mesh edges whose ends share a color that is not continuous along the edge.
+    """
+
+    names: tuple[str, ...]
+    branch: tuple[int, ...]
+    node_color: Index
+    linked: Mask
+    cracks: tuple[Crack, ...]
+
+
+def color_nodes(nodes: Mask, edges: Index, linked: Mask, branch_names: tuple[str, ...]) -> Coloring:
+    """Connected components of linked nodes.
+
+    Numbering is deterministic: colors follow their branches; within a branch the components
+    with more vertices come first, and of equal ones that with the smallest vertex.
+
+    Args:
+        nodes: (n, branches) which of them there are.
+        edges: (k, 2) all mesh edges.
+        linked: (k, branches) along which of them a branch leads; False where an end is no node.
+    """
+    component = regions(nodes, edges, linked)
+    of_branch = np.zeros(component.max(initial=-1) + 1, dtype=np.int64)
+    of_branch[component[nodes]] = np.nonzero(nodes)[1]
+    order = np.argsort(of_branch, kind="stable")
+    node_color = np.full(nodes.shape, -1, dtype=np.int64)
+    node_color[nodes] = np.argsort(order)[component[nodes]]
+    names = []
+    sizes = np.bincount(of_branch, minlength=len(branch_names)).tolist()
+    for name, size in zip(branch_names, sizes, strict=True):
+        names += [name] if size == 1 else [f"{name} {k}" for k in range(1, size + 1)]
+    branch = tuple(of_branch[order].tolist())
+    return Coloring(tuple(names), branch, node_color, linked, _cracks(edges, linked, node_color))
+
+
+def regions(nodes: Mask, edges: Index, linked: Mask) -> Index:
+    """The number of each node's component, (n, branches), largest first; -1 for no node."""
+    row, branch = np.nonzero(linked)
+    return components_of(nodes, edges, np.column_stack([row, branch, branch]))
+
+
+def _cracks(edges: Index, linked: Mask, node_color: Index) -> tuple[Crack, ...]:
+    start, end = node_color[edges[:, 0]], node_color[edges[:, 1]]
+    torn = (start == end) & (start >= 0) & ~linked
+    return tuple(
+        Crack(int(edges[row, 0]), int(edges[row, 1]), tuple(sorted(start[row, torn[row]].tolist())))
+        for row in np.flatnonzero(torn.any(axis=1))
+    )
 
 
 @dataclass(frozen=True, eq=False)
