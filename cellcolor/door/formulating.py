@@ -17,8 +17,9 @@ class Formulation(CompleteModel):
     """The complete CP-SAT model of an instance, to be extended and solved (docs/formulation.md).
 
     Constraints of your own go to ``model`` and refer to ``variables``; ``model`` minimizes
-    ``segments``. The redundant groups ``undivided``, ``links`` and ``zeros`` hold for some division
-    with the fewest segments, not for all. Leave out those that your constraints may contradict.
+    ``segments``. The redundant groups ``undivided``, ``connections`` and ``zeros`` hold for some
+    division with the fewest segments, not for all. Leave out those that your constraints may
+    contradict.
     """
 
     def division(self, solver: CpSolver) -> Solution:

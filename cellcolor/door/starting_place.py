@@ -88,8 +88,8 @@ def best_place(
         commonest = found.reason_names[codes.most_common(1)[0][0]]
         message = (
             "nothing of the part can be reached at any of nine places before the robot; most often "
-            f"a posture fails by {commonest!r}: does the part's outside face the robot (--outside flip), "
-            "and is its size one for this arm?"
+            f"a posture fails by {commonest!r}: does the part's outside face the robot "
+            "(--outside flip), and is its size one for this arm?"
         )
         raise InputError(None, None, "; ".join([message, *best.robot.warnings]))
     return best, found

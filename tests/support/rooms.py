@@ -113,3 +113,16 @@ def hub(*colors: int | tuple[int, ...]) -> Instance:
 def four_colors_in_turn(petals: int) -> Instance:
     """A hub however large, made at once, since no minimum is worked out with it."""
     return hub(*(number % 4 for number in range(petals)))
+
+
+def hub_with_a_hole() -> Instance:
+    """A hub in three colors, with leaf cells around it and in its hole, one of them with two.
+
+    In colors 0 and 1 alone its first edge cannot be joined, and both loops have another first dart.
+    """
+    petals = {1: (2, 3), 2: (0,), 3: (1,), 4: (0,), 5: (0,), 6: (1,)}
+    leaves = [Cell(n, own, ((-n, 7) if n == 1 else (-n,),)) for n, own in petals.items()]
+    hub = Cell(0, (0, 1, 3), ((1, 2, 3, 4), (5, 6)))
+    edges = (*(Edge(n, 0, n) for n in petals), Edge(7, 1, 7))
+    cells = (hub, *leaves, Cell(7, (2,), ((-7,),)))
+    return Instance("hub with a hole", ("a", "b", "c", "d"), cells, edges)

@@ -9,7 +9,7 @@ cells where a region holds both. (Files call this kind of bound ``strangers``.)
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING
 
@@ -56,22 +56,6 @@ def color_regions(instance: Instance) -> list[Region]:
             together.union((color, edge.left), (color, edge.right))
     found = sorted(together.sets(), key=min)
     return [(min(own)[0], frozenset(cell for _, cell in own)) for own in found]
-
-
-def within(instance: Instance, regions: Iterable[Region]) -> Instance:
-    """The instance in the colors of some color regions, which touch every cell."""
-    allowed = {(cell, color) for color, cells in regions for cell in cells}
-
-    def few(colors: Sequence[int], *cells: int) -> tuple[int, ...]:
-        return tuple(c for c in colors if all((cell, c) in allowed for cell in cells))
-
-    return replace(
-        instance,
-        cells=tuple(replace(cell, colors=few(cell.colors, cell.id)) for cell in instance.cells),
-        edges=tuple(
-            replace(e, colors=few(instance.joinable(e.id), e.left, e.right)) for e in instance.edges
-        ),
-    )
 
 
 def set_cover(regions: Sequence[Region], deadline: Deadline = NEVER) -> Cover:

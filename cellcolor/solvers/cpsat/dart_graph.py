@@ -9,7 +9,7 @@ mistake in one of the three is found by comparing.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -102,12 +102,53 @@ def dart_graph(
     return DartGraph(darts, tuple(lists), colors, tuple(seams or ()))
 
 
+def restricted(graph: DartGraph, allowed: Collection[tuple[int, int]]) -> DartGraph:
+    """A graph in some of its colors, without the darts that cannot be joined then.
+
+    Darts keep their names and their order, so that a painting of it is one of the graph.
+
+    Args:
+        allowed: the cells and their colors, ``(color, cell)``.
+    """
+    colors = tuple(
+        frozenset(color for color in own if (color, cell) in allowed)
+        for cell, own in enumerate(graph.colors)
+    )
+    left = [
+        dart.colors & colors[dart.cell] & colors[graph.darts[dart.twin].cell]
+        for dart in graph.darts
+    ]
+    number = {old: new for new, old in enumerate(d for d, own in enumerate(left) if own)}
+    darts = tuple(
+        graph.darts[old]._replace(twin=number[graph.darts[old].twin], colors=left[old])
+        for old in number
+    )
+    loops = tuple(
+        tuple(tuple(number[dart] for dart in loop if dart in number) for loop in own)
+        for own in graph.loops
+    )
+    return DartGraph(darts, loops, colors, graph.seams)
+
+
+def strands_of_seams(instance: Instance, strands: Mapping[int, int]) -> list[int]:
+    """As many strands of each seam as leave each cell's minimum unchanged (semantics, section 5).
+
+    Args:
+        strands: of each live edge.
+    """
+    widths: list[int] = []
+    for own in instance.live_loops:
+        darts = sum(strands[abs(dart)] for loop in own for dart in loop)
+        for _ in own[1:]:
+            widths.append(max(0, darts // 2 - (len(own) == 2)))
+            darts += 2 * widths[-1]  # on both sides of this seam
+    return widths
+
+
 def wide_enough_seams(
-    instance: Instance, strands: Mapping[int, int], most: int | None = None
+    instance: Instance, strands: Mapping[int, int], most: int = MOST_STRANDS
 ) -> tuple[Seam, ...]:
     """Seams from the first live loop of every cell to its other live loops.
-
-    They have as many strands as leave the cell's minimum unchanged (semantics, section 5).
 
     Args:
         strands: of each live edge.
@@ -116,13 +157,7 @@ def wide_enough_seams(
     Raises:
         TooLarge: the seams would need too many strands.
     """
-    widths: list[int] = []
-    for own in instance.live_loops:
-        darts = sum(strands[abs(dart)] for loop in own for dart in loop)
-        for _ in own[1:]:
-            enough = max(0, darts // 2 - (len(own) == 2))
-            widths.append(enough if most is None else min(enough, most))
-            darts += 2 * enough  # on both sides of this seam
+    widths = [min(width, most) for width in strands_of_seams(instance, strands)]
     if sum(widths) > MOST_STRANDS:
         message = f"{sum(widths)} strands of seams, {MOST_STRANDS} are the most"
         raise TooLarge(f"The model was not built: it would need {message}.")
@@ -132,8 +167,7 @@ def wide_enough_seams(
 
 def complete_graph(instance: Instance, strands: Mapping[int, int]) -> DartGraph:
     """The graph in which every scheme can be drawn, with so many strands of each live edge."""
-    own = {edge: strands[edge] for edge in instance.live_edges}
-    return dart_graph(instance, own, wide_enough_seams(instance, own))
+    return dart_graph(instance, strands, wide_enough_seams(instance, strands))
 
 
 def narrow_graph(instance: Instance, most: int) -> DartGraph:

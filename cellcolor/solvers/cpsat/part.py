@@ -23,19 +23,20 @@ from cellcolor.solvers.bounds.cover import (
     color_regions,
     greedy_independent_set,
     set_cover,
-    within,
 )
 from cellcolor.solvers.cpsat.dart_graph import (
     DartGraph,
     complete_graph,
     enough_crossings,
     narrow_graph,
+    restricted,
+    strands_of_seams,
 )
 from cellcolor.solvers.cpsat.exact_shapes import exact_minimum, painting_of_areas
 from cellcolor.solvers.cpsat.formulation import SectorModel
 from cellcolor.solvers.cpsat.local_search import recolor
 from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, moved, segments_of
-from cellcolor.solvers.cpsat.segment_plans import Planner, SegmentPlan, Undecided
+from cellcolor.solvers.cpsat.segment_plans import Planner, Undecided
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.interruptible import Runner
 
@@ -201,7 +202,7 @@ class Part:
                 return
             if self.planner.find_separations(plan, deadline):
                 continue
-            if not decide or not self._decide(plan, DECIDING * effort, deadline):
+            if not decide or not self._decide(DECIDING * effort, deadline):
                 return
 
     def solve_model(self, deadline: Deadline) -> None:
@@ -258,18 +259,19 @@ class Part:
         )
         return tuple(sorted(hard))
 
-    def _decide(self, plan: SegmentPlan, effort: float, deadline: Deadline) -> bool:
-        """Whether it is decided if a division in a plan's color regions alone meets the bound.
+    def _decide(self, effort: float, deadline: Deadline) -> bool:
+        """Whether it is decided if a division in the last plan's regions alone meets the bound.
 
-        It is the complete model of the few colors that the plan leaves, without objective.
+        It is the complete model in the few colors that the plan leaves, without objective.
         """
-        few = within(self.instance, [region for region, _ in plan])
+        assert self.planner is not None
+        regions = self.planner.regions_in_use
+        allowed = {(color, cell) for color, cells in regions for cell in cells}
         for complete in self._stages:
             try:
-                graph, target = (
-                    self._graph(own, complete=complete) for own in (few, self.instance)
-                )
-                built = SectorModel(graph, color_regions(few), MOST_LITERALS, deadline=deadline)
+                graph = self._graph(complete=complete)
+                few = restricted(graph, allowed)
+                built = SectorModel(few, regions, MOST_LITERALS, deadline=deadline)
             except TooLarge:
                 return False
             built.model.add(built.segments <= self.bound)
@@ -278,18 +280,17 @@ class Part:
             solver.parameters.linearization_level = 0
             status = self._runner.solve(solver, built.model)
             if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-                painting = canonical(graph, built.painting(solver))
-                self._keep(target, canonical(target, moved(graph, painting, target)))
+                painting = moved(few, canonical(few, built.painting(solver)), graph)
+                self._keep(graph, canonical(graph, painting))
                 return True
             if status != cp_model.INFEASIBLE:
                 return False
-        assert self.planner is not None
-        self.planner.refute(plan, self.bound)
+        self.planner.refute(self.bound)
         return True
 
     def _minimize(self, deadline: Deadline, *, complete: bool) -> None:
         try:
-            graph = self._graph(self.instance, complete=complete)
+            graph = self._graph(complete=complete)
             built = SectorModel(graph, self.regions, MOST_LITERALS, deadline=deadline)
         except TooLarge as error:
             self.notes.append(str(error))
@@ -313,14 +314,15 @@ class Part:
     @property
     def _stages(self) -> tuple[bool, ...]:
         """Whether models are built on the complete graph: at once, or after a narrow one."""
-        few = max((seam.strands for seam in self._narrow.seams), default=0) < FEW_STRANDS
-        return (True,) if few and max(self._strands.values(), default=1) == 1 else (False, True)
+        seams = strands_of_seams(self.instance, self._strands)
+        once = max(self._strands.values(), default=1) == 1
+        return (True,) if once and max(seams, default=0) <= SOME_STRANDS else (False, True)
 
-    def _graph(self, instance: Instance, *, complete: bool) -> DartGraph:
-        """The part's darts in some of its colors, with all strands ever needed or with few."""
+    def _graph(self, *, complete: bool) -> DartGraph:
+        """The part's darts with all strands ever needed, or with few."""
         if complete:
-            return complete_graph(instance, self._strands)
-        return narrow_graph(instance, SOME_STRANDS)
+            return complete_graph(self.instance, self._strands)
+        return narrow_graph(self.instance, SOME_STRANDS)
 
     def _covered(self, regions: Sequence[Region]) -> tuple[DartGraph, Painting]:
         """Every cell painted whole in the color of the last region that has it."""

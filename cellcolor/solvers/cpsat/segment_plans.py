@@ -144,10 +144,14 @@ class Planner:
         }
         return self._read(kinds)
 
-    def refute(self, plan: SegmentPlan, segments: int) -> None:
-        """No division with so many segments has all of them in the color regions of a plan."""
-        regions = {self._number[region] for region, _ in plan}
-        self._refuted[segments].append(regions)
+    @property
+    def regions_in_use(self) -> list[Region]:
+        """Those of the last plan's segments, also of the ones that no cell was given to."""
+        return [self._regions[number] for number in sorted({number for number, _ in self._last})]
+
+    def refute(self, segments: int) -> None:
+        """No division with so many segments has all of them in the regions of the last plan."""
+        self._refuted[segments].append({number for number, _ in self._last})
 
     def refuted(self, segments: int) -> bool:
         """Whether some plan with so many segments was refuted."""

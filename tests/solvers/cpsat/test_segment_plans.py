@@ -7,12 +7,12 @@ from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
 from ortools.sat.python import cp_model
-from rooms import hub
+from rooms import hub, hub_with_a_hole
 
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.lab.families import planar_graph
-from cellcolor.solvers.bounds.cover import color_regions, set_cover
+from cellcolor.solvers.bounds.cover import Region, color_regions, set_cover
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat.segment_plans import Planner, SegmentPlan
 from cellcolor.solvers.interface import Options
@@ -75,6 +75,19 @@ def test_what_cannot_be_planned_cannot_be_painted(seed: int, cells: int, colors:
     for cell in instance.cells:
         assert sum(cell.id in cells for _, cells in plan) == 1
     assert all(cells <= region[1] for region, cells in plan)
+
+
+def test_a_refuted_plan_does_not_come_again() -> None:
+    """Not even with a segment that touches nothing of its own: with one more than a smallest cover
+    has, each set of regions is refuted once, until none is left."""
+    instance = hub_with_a_hole()
+    planner, segments = planner_of(instance), set_cover(color_regions(instance)).bound + 1
+    seen: list[frozenset[Region]] = []
+    while planner.plan(segments, one_worker) is not None:
+        seen.append(frozenset(planner.regions_in_use))
+        assert len(seen) == len(set(seen))
+        planner.refute(segments)
+    assert seen
 
 
 def test_no_time() -> None:

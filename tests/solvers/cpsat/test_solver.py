@@ -8,6 +8,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 from library import INSTANCES
+from rooms import hub_with_a_hole
 
 from cellcolor.checker.division import check_division
 from cellcolor.data.instance import Instance
@@ -21,6 +22,7 @@ from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.cpsat.dart_graph import split
 from cellcolor.solvers.cpsat.painting import division_of
 from cellcolor.solvers.cpsat.part import Part
+from cellcolor.solvers.cpsat.segment_plans import Planner
 from cellcolor.solvers.interface import Options, Start
 from cellcolor.solvers.interruptible import Runner
 from examples import examples
@@ -86,6 +88,11 @@ def part_of(instance: Instance) -> Part:
     return part
 
 
+def legal(part: Part) -> bool:
+    graph, painting = part.best
+    return check_division(part.instance, division_of(graph, painting), graph.seams).valid
+
+
 @examples(15)
 @given(seed=SEEDS, petals=st.integers(2, 3))
 @example(seed=0, petals=3)
@@ -96,8 +103,22 @@ def test_plans_that_are_decided_one_by_one_prove_the_minimum(seed: int, petals: 
     if not part.done:
         part.separate(4.0, NEVER, decide=True)
     assert part.done and part.segments == solve(instance, Options(), "dfs").segments
+    assert legal(part)
     if (seed, petals) == (0, 3):  # no pair of its segments has to cross, but four of them would
         assert (part.bound_kind, part.surface_bound, part.bound) == ("exact", 3, 4)
+
+
+def test_a_plan_is_decided_on_the_loops_of_all_colors(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In the plan's colors a loop begins with another dart; seams still begin where they did."""
+    instance = hub_with_a_hole()
+    part = part_of(instance)
+    regions = [region for region in color_regions(instance) if region[0] != 3]
+    plans = iter([tuple((region, region[1]) for region in regions), None])
+    monkeypatch.setattr(Planner, "plan", lambda *_: next(plans))
+    monkeypatch.setattr(Planner, "regions_in_use", regions)
+    monkeypatch.setattr(Planner, "find_separations", lambda *_: False)
+    part.separate(4.0, NEVER, decide=True)
+    assert part.segments == 3 and legal(part)
 
 
 @pytest.mark.parametrize(
