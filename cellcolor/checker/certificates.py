@@ -71,7 +71,6 @@ def verify_cells(proof: Proof, certificate: CertifiedCells, value: int) -> None:
 
 def verify_parts(proof: Proof, certificate: CertifiedParts, value: int) -> None:
     """Verify that the parts together need that many segments."""
-    _leave_out(proof, certificate.left_out)
     _verify(proof, certificate.parts, value)
 
 
@@ -110,27 +109,6 @@ def verify_bound(
     except (InputError, Refused) as error:
         outcome, reason = "refused", str(error)
     return BoundVerdict(bound, outcome, reason, proof.tried, budget)
-
-
-def _leave_out(proof: Proof, steps: Sequence[tuple[int, int, int]]) -> None:
-    """Leave out color regions that another color can stand in for, one after the other."""
-    for color, cell, stand_in in steps:
-        region = proof.region(color, cell)
-        cells = proof.cells_of(region)
-        inside = frozenset(cells)
-        for own in cells:
-            if not any(other[0] == stand_in for other in proof.regions[own]):
-                raise Refused(f"color {stand_in} cannot stand in for color {color} in {own}")
-            for dart in (dart for loop in proof.instance.cells[own].loops for dart in loop):
-                joinable = proof.instance.joinable(dart)
-                within = proof.instance.across(dart) in inside
-                if within and color in joinable and stand_in not in joinable:
-                    text = f"color {stand_in} does not continue across edge {abs(dart)}"
-                    raise Refused(f"{text}, where color {color} does")
-        if stand_in == color:
-            raise Refused(f"color {color} cannot stand in for itself")
-        for own in cells:
-            proof.regions[own] -= {region}
 
 
 def _verify(proof: Proof, parts: Sequence[CertifiedPart], value: int) -> None:

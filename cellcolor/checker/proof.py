@@ -23,7 +23,7 @@ class Proof:
     """The steps of one certificate.
 
     Attributes:
-        regions: the color regions that each cell lies in, without those that were left out.
+        regions: the color regions that each cell lies in.
         tried: choices so far.
     """
 
@@ -34,7 +34,7 @@ class Proof:
         budget: int,
         deadline: Deadline,
     ) -> None:
-        self.instance, self.regions = instance, list(regions)
+        self.instance, self.regions = instance, regions
         self.budget, self.deadline = budget, deadline
         self.tried = 0
 
@@ -53,7 +53,7 @@ class Proof:
         for region in self.regions_of(cell):
             if region[0] == color:
                 return region
-        raise Refused(f"color {color} is not available in cell {cell}, or is left out there")
+        raise Refused(f"color {color} is not available in cell {cell}")
 
     def regions_of(self, cell: int) -> frozenset[ColorRegion]:
         """The color regions that a cell lies in.

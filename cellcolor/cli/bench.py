@@ -76,6 +76,13 @@ def bench() -> None:
     show_default=True,
 )
 @option("--jobs", COUNT, "Number of processes at a time.", default=1)
+@option(
+    "--in-process",
+    bool,
+    "Start no processes: quicker, but nothing ends a solver that goes on, or takes the memory.",
+    is_flag=True,
+    default=False,
+)
 @output_option(
     "TABLE.csv", "A row for each run. An existing table is continued: its runs are not repeated."
 )
@@ -84,10 +91,11 @@ def run(
     solvers: Sequence[str],
     seeds: Sequence[int],
     jobs: int,
+    in_process: bool,
     output: Path | None,
     **wanted: Any,
 ) -> Exit:
-    """Run solvers on instances, each solve in a process of its own.
+    """Run solvers on instances, each solve in a process of its own unless --in-process is given.
 
     FAMILY is a set of random families (small, medium, large, growing), the library of shipped
     graphs (library) or one family, such as medium/thin; * stands for anything. Solvers that are
@@ -121,7 +129,7 @@ def run(
         )
         try:
             with line_of(Path("bench"), "solving") as show:
-                for row in sweep.run(jobs):
+                for row in sweep.run(None if in_process else jobs):
                     table.append(row)
                     done = len(table.rows) - before + sweep.skipped
                     show(f"{done} of {sweep.runs}, {row.subject}: {row.contestant}")
@@ -146,7 +154,15 @@ def run(
 
 @bench.command()
 @_TABLES
-def summary(tables: tuple[Path, ...]) -> Exit:
+@option(
+    "--pair",
+    str,
+    "Compare these two by paired tests, with intervals.",
+    default=None,
+    metavar="NAME NAME",
+    nargs=2,
+)
+def summary(tables: tuple[Path, ...], pair: tuple[str, str] | None) -> Exit:
     """Sum tables up as Markdown; exit code 1 if two runs contradict each other."""
     from cellcolor.lab.runs.summary import summary_of_runs
     from cellcolor.lab.runs.table import disagreements, read_table
@@ -155,6 +171,10 @@ def summary(tables: tuple[Path, ...]) -> Exit:
     if not rows:
         raise InputError(str(tables[0]), None, "has no rows")
     say_lines("\n".join(summary_of_runs(rows)))
+    if pair is not None:
+        from cellcolor.lab.runs.pairs import paired
+
+        say_lines("\n".join(paired(rows, *pair)))
     return Exit.INVALID if disagreements(rows) else Exit.DONE
 
 

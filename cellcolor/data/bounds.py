@@ -144,12 +144,9 @@ class CertifiedParts(Certificate):
     """Parts whose values add up.
 
     Attributes:
-        left_out: color regions that are left out, in older certificates: each by its color and one
-            of its cells, with the color that replaces it.
         parts: no color region of one lies in another.
     """
 
-    left_out: tuple[tuple[int, int, int], ...] = ()
     parts: tuple[CertifiedPart, ...]
 
 
@@ -195,7 +192,8 @@ def kind_of(bound: Bound) -> BoundKind:
 def certificate_of(bound: Bound) -> Certificate | None:
     """What a bound can be verified by; None if there is nothing.
 
-    Nothing verifies older certificates any more that have hubs or tangles in a part.
+    Nothing verifies older certificates any more that leave out color regions, or have hubs or
+    tangles in a part.
 
     Raises:
         InputError: it is no certificate of its kind.
@@ -203,9 +201,11 @@ def certificate_of(bound: Bound) -> Certificate | None:
     form = kind_of(bound).certificate
     if form is None or bound.certificate is None:
         return None
-    parts = bound.certificate.get("parts")
-    if form is CertifiedParts and isinstance(parts, list):
-        members = {name for part in parts if isinstance(part, dict) for name in part}
-        if not members.isdisjoint(("hubs", "tangles")):
+    document = dict(bound.certificate)
+    if form is CertifiedParts:
+        older, parts = bool(document.pop("left_out", [])), document.get("parts")
+        for part in parts if isinstance(parts, list) else []:
+            older |= isinstance(part, dict) and not part.keys().isdisjoint(("hubs", "tangles"))
+        if older:
             return None
-    return form.from_document(bound.certificate)
+    return form.from_document(document)

@@ -35,12 +35,13 @@ def check_part(part: Surface, scene: Scene, reach: float, base: Array) -> None:
         reach: of the arm, m.
         base: (3,) where the arm's base stands in the world, m.
     """
-    largest = float(np.ptp(part.vertices, axis=0).max())
+    extents = np.ptp(part.vertices, axis=0)
+    largest = float(extents.max())
     if largest > _REACHES * reach:
         field, meant = _unit_of(scene)
         message = (
-            f"the part is {size_of(part)}, {largest / reach:.0f} times the arm's reach "
-            f"({reach:.3g} m): {meant}"
+            f"the part is {in_meters(extents.tolist())}, {largest / reach:.0f} times the arm's "
+            f"reach ({reach:.3g} m): {meant}"
         )
         raise InputError(None, field, message)
     away = float(np.linalg.norm(part.vertices - base, axis=1).min())
@@ -94,10 +95,10 @@ def check_motion(motion: Motion, part: Surface, scene: Scene, reach: float) -> N
 def _no_larger_than_part(
     lengths: Mapping[str, float | None], part: Surface, scene: Scene, reach: float
 ) -> None:
-    largest = float(np.linalg.norm(np.ptp(part.vertices, axis=0)))
+    extents = np.ptp(part.vertices, axis=0)
+    size = in_meters(extents.tolist())
     for field, length in lengths.items():
-        if length is not None and length > largest:
-            size = size_of(part)
+        if length is not None and length > np.linalg.norm(extents):
             if length < _PLAUSIBLE * reach:  # then it is the part that is too small
                 unit = getattr(scene.object, "meters_per_unit", None)
                 key = "object" if unit is None else "object.meters_per_unit"
@@ -133,8 +134,3 @@ def notes_on_units(scene: Scene, reach: float) -> tuple[str, ...]:
             meant = looks_like_millimeters(*obstacle.position_m)
             found.append(f"obstacle[{number}].position_m: {meant}")
     return tuple(found)
-
-
-def size_of(part: Surface) -> str:
-    """The part's extents along the axes of the world, ``0.4 x 0.4 x 0.12 m``."""
-    return in_meters(np.ptp(part.vertices, axis=0).tolist())

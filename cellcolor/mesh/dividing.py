@@ -57,7 +57,12 @@ def cut(
         a, c, ab, bc = (points[names[two, corner]] for corner in (0, 2, 3, 4))
         other = ~(np.linalg.norm(a - bc, axis=1) < np.linalg.norm(ab - c, axis=1))
         names[two[other], 6:] = names[two[other]][:, [2, 3]]
-    return _pieces(names)
+    found, of = [], []
+    for sides, parts in _PIECES.items():
+        rows = np.flatnonzero(((names[:, 3:6] >= 0) == sides).all(axis=1))
+        found += [names[rows][:, part] for part in parts]
+        of += [rows] * len(parts)
+    return np.concatenate(found), np.concatenate(of)
 
 
 def halved(mesh: TriangleMesh, marked: Mask) -> tuple[TriangleMesh, Index]:
@@ -86,16 +91,6 @@ def with_longest_sides(mesh: TriangleMesh, marked: Mask) -> Mask:
         if not len(missing):
             return marked
         marked[missing] = True
-
-
-def _pieces(names: Index) -> tuple[Index, Index]:
-    is_cut = names[:, 3:6] >= 0
-    found, of = [], []
-    for sides, parts in _PIECES.items():
-        rows = np.flatnonzero((is_cut == sides).all(axis=1))
-        found += [names[rows][:, part] for part in parts]
-        of += [rows] * len(parts)
-    return np.concatenate(found), np.concatenate(of)
 
 
 def small_triangles(mesh: TriangleMesh) -> tuple[TriangleMesh, Index]:

@@ -189,11 +189,6 @@ class TriangleMesh:
             found.append(loop)
         return sorted(found, key=min)
 
-    @property
-    def euler(self) -> int:
-        """The Euler characteristic; points that no triangle has do not count."""
-        return len(np.unique(self.corners)) - len(self.edges) + len(self.corners)
-
     def parts(self, closed: Mask | None = None) -> Index:
         """The part (m,) of each triangle: triangles belong together that have an edge in common.
 

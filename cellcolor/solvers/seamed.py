@@ -13,7 +13,7 @@ from cellcolor.data.cells_and_edges import Cell, DartName, Edge, Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, number_segments
 from cellcolor.errors import TooLarge
-from cellcolor.solvers.cpsat.dart_graph import dart_graph, widened
+from cellcolor.solvers.cpsat.dart_graph import dart_graph, wide_enough_seams
 
 MOST_STRANDS = 10_000
 """The models grow with the square of the darts of a cell, so that none would have more."""
@@ -37,7 +37,7 @@ class Seamed:
         if instance.most_live_loops < 2:
             return
         once = dict.fromkeys(instance.live_edges, 1)
-        self.seams = widened(instance, once)
+        self.seams = wide_enough_seams(instance, once)
         strands = sum(seam.strands for seam in self.seams)
         if strands > MOST_STRANDS:
             message = f"the seams need {strands} strands, {MOST_STRANDS} at most become edges"

@@ -162,25 +162,27 @@ def test_a_bound_of_another_kind_has_none() -> None:
 
 HUB = {"value": 2, "cells": [0, 1], "conflicts": [], "hubs": [2]}
 TANGLE = {"segments": [{"color": 0, "groups": [[[0]], [[2]]], "avoided": [1]}]}
+PLAIN = {"value": 2, "cells": [0], "conflicts": []}
 TANGLED = {"value": 2, "cells": [0, 1, 2], "conflicts": [], "tangles": [TANGLE]}
 
 
 @pytest.mark.parametrize(
-    ("kind", "parts"),
+    ("kind", "steps", "parts"),
     [
-        ("hubs", [HUB]),
-        ("conflicts", [HUB]),
-        ("conflicts", [TANGLED]),
-        ("conflicts", [{**TANGLED, "tangles": []}]),
-        ("conflicts", [{"value": 2, "cells": [0], "conflicts": []}, TANGLED]),
+        ("hubs", [], [HUB]),
+        ("conflicts", [], [HUB]),
+        ("conflicts", [], [TANGLED]),
+        ("conflicts", [], [{**TANGLED, "tangles": []}]),
+        ("conflicts", [], [PLAIN, TANGLED]),
+        ("conflicts", [[0, 0, 1]], [PLAIN]),
     ],
 )
-def test_an_older_certificate_of_hubs_or_tangles_is_neither_verified_nor_refused(
-    kind: str, parts: list[dict[str, object]]
+def test_an_older_certificate_of_a_kind_that_is_gone_is_neither_verified_nor_refused(
+    kind: str, steps: list[list[int]], parts: list[dict[str, object]]
 ) -> None:
     """Nothing verifies it any more; the solution stays valid, and its bound is a claim."""
     instance = cellcolor.decompose(THREE)
-    bound = Bound(kind, 2, "surface", {"left_out": [], "parts": parts})
+    bound = Bound(kind, 2, "surface", {"left_out": steps, "parts": parts})
     solution = replace(cellcolor.solve(instance).solution, bounds=(bound,))
     report = cellcolor.check(instance, Solution.from_document(solution.to_document()))
     assert report.valid

@@ -17,6 +17,7 @@ from commands import run
 from guides import install
 from library import PAPER
 
+import cellcolor.processes
 from cellcolor.lab.runs.table import Row, read_table
 from cellcolor.processes import Task
 from cellcolor.solvers.registry import GROUP
@@ -102,6 +103,18 @@ class TestRun:
             )
             assert min(row.process_seconds, row.cpu_seconds, row.peak_mb) > 0
         assert found[1].solver_version.startswith("OR-Tools ") and found[1].workers == 1
+
+    def test_in_process(self, table: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The same answers, by no other process."""
+        monkeypatch.setattr(cellcolor.processes, "run_alone", None)
+        here = tmp_path / "here.csv"
+        solvers = ("--solver", "dfs", "--solver", "cp-sat@1")
+        subjects = (RING, "crossing-zeros")
+        assert run("bench", "run", *subjects, *solvers, "--in-process", "-o", here) == 0
+        assert [(row.key, row.segments) for row in rows(here)] == [
+            (row.key, row.segments) for row in rows(table)
+        ]
+        assert all(row.peak_mb == 0 for row in rows(here))
 
     def test_families_take_turns_and_a_table_is_continued(
         self, tmp_path: Path, capsys: Capture
@@ -230,6 +243,15 @@ class TestTables:
         assert "4 runs on 2 instances" in out
         assert "No two runs contradict each other. On 2 instances two solvers" in out
         assert "| paper | 2/2 | 2/2 |" in out
+
+    def test_pair(self, table: Path, capsys: Capture) -> None:
+        assert run("bench", "summary", table, "--pair", "dfs", "cp-sat@1") == 0
+        out = capsys.readouterr().out
+        assert (
+            "## dfs and cp-sat@1, search space paper, 10 s" in out and "| proved | 2 | 2 |" in out
+        )
+        assert run("bench", "summary", table, "--pair", "dfs", "scip") == 2
+        assert "--pair: there are no runs of scip, only of" in capsys.readouterr().err
 
     def test_what_is_no_table(self, tmp_path: Path, capsys: Capture) -> None:
         other = tmp_path / "other.csv"

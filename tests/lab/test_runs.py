@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import fields, replace
 from pathlib import Path
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 
 from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError
+from cellcolor.lab.runs.pairs import paired
 from cellcolor.lab.runs.summary import (
     contestants_of,
     median_seconds,
@@ -127,6 +129,53 @@ class TestSummary:
     def test_contradictions_come_first(self) -> None:
         text = self.text([ROW, replace(ROW, solver="x", segments=3, lower_bound=3)])
         assert "**1 contradiction:**" in text.partition("##")[0]
+
+
+def in_pairs(rows: Sequence[Row]) -> str:
+    return "\n".join(paired(rows, "a", "b"))
+
+
+class TestPairs:
+    def test_what_one_alone_proves_is_held_against_a_fair_coin(self) -> None:
+        """Five to none: both tails of five heads in a row are 2/32. Six scores that are all smaller
+        are one end of the 2**6 choices of signs, and the other end is as rare: 2/64."""
+        found = in_pairs(times("a", *[1.0] * 6) + times("b", 2.0, *[None] * 5))
+        assert "| of 6 instances | a | b |" in found
+        assert "| proved | 6 | 1 |" in found and "| proved by this one alone | 5 | 0 |" in found
+        assert "p = 0.062 (exact McNemar test)" in found
+        assert "p = 0.031 (Wilcoxon's signed-rank test)" in found
+        assert "| PAR2, seconds | 1 | 17 |" in found  # (2 + 5 · 20) / 6
+        assert "PAR2 of a less that of b: -16 s" in found
+
+    def test_an_interval_holds_the_mean_and_no_more_than_the_extremes(self) -> None:
+        found = in_pairs(times("a", 1.0, 2.0, 3.0, 4.0) + times("b", 2.0, 4.0, 6.0, 8.0))
+        low, high = map(float, re.findall(r"less that.*interval (\S+) to ([^)]+)\)", found)[0])
+        assert -4 <= low < -2.5 < high <= -1
+        assert "took 0.5 times as long (geometric mean, 95 % interval 0.5 to 0.5)" in found
+
+    def test_equal_ones_are_not_told_apart(self) -> None:
+        found = in_pairs(times("a", 1.0, None) + times("b", 1.0, None))
+        assert "McNemar" not in found and "Wilcoxon" not in found
+        assert "PAR2 of a less that of b: 0 s (95 % interval 0 to 0)." in found
+
+    def test_runs_of_one_instance_are_one_observation(self) -> None:
+        """Proved in one of two runs is not proved, and counts (1 + 20) / 2 seconds."""
+        rows = [*times("a", 1.0), replace(OPEN, solver="a", repetition=1, sha256=f"{0:064}")]
+        found = in_pairs([*rows, *times("b", 3.0)])
+        assert "| of 1 instance | a | b |" in found and "| proved | 0 | 1 |" in found
+        assert "| PAR2, seconds | 10.5 | 3 |" in found
+        assert "one instance has no interval" in found
+
+    @pytest.mark.parametrize(
+        ("rows", "message"),
+        [
+            (times("a", 1.0), "there are no runs of b, only of a"),
+            ([*times("a", 1.0), replace(ROW, solver="b", sha256="b" * 64)], "not run on the same"),
+        ],
+    )
+    def test_what_cannot_be_compared_is_said(self, rows: list[Row], message: str) -> None:
+        with pytest.raises(InputError, match=message):
+            in_pairs(rows)
 
 
 ROWS = st.builds(

@@ -45,8 +45,6 @@ def test_edges_and_sides(mesh: TriangleMesh) -> None:
     assert list(zip(edges.tolist(), sides_of_two.tolist(), strict=True)) == twos
     on_border = {end for ends, sides in expected.items() if len(sides) == 1 for end in ends}
     assert set(np.flatnonzero(mesh.border).tolist()) == on_border
-    used = {corner for corners in mesh.corners.tolist() for corner in corners}
-    assert mesh.euler == len(used) - len(expected) + len(mesh.corners)
     for (a, b), length in zip(expected, mesh.lengths, strict=True):
         assert length == pytest.approx(math.dist(mesh.points[a], mesh.points[b]))
 
@@ -99,7 +97,7 @@ def test_areas_and_normals(mesh: TriangleMesh) -> None:
 def test_closed_meshes_as_trimesh_has_them(seed: int, degrees: float, turned: float) -> None:
     mesh = bumpy_ball(seed)
     other = trimesh.Trimesh(mesh.points, mesh.corners, process=False)
-    assert (mesh.euler, mesh.border.any()) == (other.euler_number, False)
+    assert not mesh.border.any()
     assert mesh.edges.tolist() == np.unique(other.edges_sorted, axis=0).tolist()
     assert mesh.areas.sum() == pytest.approx(other.area)
     assert np.allclose(mesh.triangle_normals, other.face_normals)
@@ -147,4 +145,4 @@ def test_shares_are_those_that_a_point_was_made_with(seed: int, count: int) -> N
 def test_a_mesh_without_triangles() -> None:
     mesh = TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64))
     assert mesh.edges.shape == (0, 2) and mesh.pairs[1].shape == (0, 2)
-    assert mesh.euler == 0 and mesh.parts().shape == (0,) and mesh.vertex_areas.shape == (0,)
+    assert mesh.parts().shape == (0,) and mesh.vertex_areas.shape == (0,)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from cellcolor.data.instance import Instance
-from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph, widened
+from cellcolor.solvers.cpsat.dart_graph import DartGraph, dart_graph, wide_enough_seams
 
 
 def graph_of(instance: Instance, strands: int = 1) -> DartGraph:
     """With seams as wide as they can have to be."""
     counts = {edge.id: strands for edge in instance.edges}
-    return dart_graph(instance, counts, widened(instance, counts))
+    return dart_graph(instance, counts, wide_enough_seams(instance, counts))

@@ -30,7 +30,6 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index, unit
 from cellcolor.frontend.arm.kinematics import (
-    TASK_JOINTS,
     forward,
     nearest_points,
     signed_task_determinant,
@@ -183,22 +182,19 @@ class NearIdeal(Polished):
 
 
 def both_sides_of_folds(robot: Robot, candidates: Array) -> Array:
-    """Candidates (k, s, joints), and two more beside each that is next to a singularity.
+    """Candidates (k, s, 6), and two more beside each that is next to a singularity.
 
     There two solutions meet, and where the ideal arm just does not reach the true one may have
     both. They lie on both sides, in the direction in which the task does not move.
 
     Returns:
-        (k, 3 s, joints) in rad, NaN where there is none.
+        (k, 3 s, 6) in rad, NaN where there is none.
     """
-    shape = candidates.shape
-    flat = candidates.reshape(-1, shape[2])
-    beside = np.full((2, *flat.shape), np.nan)
-    there = np.flatnonzero(~np.isnan(flat[:, 0]))
-    rows, _ = task_jacobian(forward(robot, flat[there]))
+    there = ~np.isnan(candidates[:, :, 0])
+    rows, _ = task_jacobian(forward(robot, candidates[there]))
     _, sizes, turned = np.linalg.svd(rows)
-    folded = sizes[:, -1] < _FOLDED
-    for side, way in zip(beside, (_APART, -_APART), strict=True):
-        side[there[folded]] = flat[there[folded]]
-        side[there[folded], :TASK_JOINTS] += way * turned[folded, -1]
-    return np.concatenate([candidates, *beside.reshape(2, *shape)], axis=1)
+    way = np.where(sizes[:, -1:] < _FOLDED, _APART * turned[:, -1], np.nan)
+    way = np.pad(way, ((0, 0), (0, 1)))  # joint 6 stays
+    beside = np.full((2, *candidates.shape), np.nan)
+    beside[:, there] = candidates[there] + np.stack([way, -way])
+    return np.concatenate([candidates, *beside], axis=1)

@@ -102,21 +102,20 @@ class Signs:
         found = np.empty(len(configurations), dtype=np.intp)
         determinants = np.empty(len(configurations))
         for rows in chunks(len(found)):
-            found[rows], determinants[rows] = self._branches(forward(robot, configurations[rows]))
+            poses = forward(robot, configurations[rows])
+            factors = self.factors(poses)
+            negative = factors < 0
+            # The product of the plain factors: the second one has the sign of the first in it.
+            product = np.where(negative[:, 1] ^ negative[:, 2], -1.0, 1.0)
+            determinant = signed_task_determinant(*tip_jacobian(poses), poses.tool_axis)
+            wrong = np.flatnonzero(product * determinant * self.parity < 0)
+            nearest = np.argmin(np.abs(factors[wrong]), axis=1)
+            negative[wrong, nearest] ^= True
+            # A shoulder that changes its sign takes the elbow's with it, whose own factor stays.
+            negative[wrong[nearest == 0], 1] ^= True
+            found[rows] = self.numbers[negative @ np.array([4, 2, 1])]
+            determinants[rows] = np.abs(determinant)
         return found, determinants
-
-    def _branches(self, poses: Poses) -> tuple[NDArray[np.intp], Array]:
-        factors = self.factors(poses)
-        negative = factors < 0
-        # The product of the plain factors: the second one has the sign of the first in it.
-        product = np.where(negative[:, 1] ^ negative[:, 2], -1.0, 1.0)
-        determinant = signed_task_determinant(*tip_jacobian(poses), poses.tool_axis)
-        wrong = np.flatnonzero(product * determinant * self.parity < 0)
-        nearest = np.argmin(np.abs(factors[wrong]), axis=1)
-        negative[wrong, nearest] ^= True
-        # A shoulder that changes its sign takes the elbow's with it, whose own factor stays.
-        negative[wrong[nearest == 0], 1] ^= True
-        return self.numbers[negative @ np.array([4, 2, 1])], np.abs(determinant)
 
 
 def signs_of(robot: Robot, reach: float, tolerance: float) -> Signs | None:

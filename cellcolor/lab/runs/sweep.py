@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
@@ -165,10 +166,19 @@ class Sweep:
     def _of_each(self) -> int:
         return len(self.limits) * self.repetitions * len(self.contestants)
 
-    def run(self, jobs: int) -> Iterator[Row]:
-        """A row for each run, as they end, so many at a time."""
-        for known, ended in as_they_end(jobs, self._tasks()):
+    def run(self, jobs: int | None) -> Iterator[Row]:
+        """A row for each run, as they end, so many processes at a time; None for no processes."""
+        done = self._in_turn() if jobs is None else as_they_end(jobs, self._tasks())
+        for known, ended in done:
             yield _row(known, ended)
+
+    def _in_turn(self) -> Iterator[tuple[dict[str, Any], Ended]]:
+        """Each run in this process, whose memory is not that of a run."""
+        for known, task in self._tasks():
+            begun, spent = time.monotonic(), time.process_time()
+            value = task.function(*task.arguments)
+            seconds, cpu_seconds = time.monotonic() - begun, time.process_time() - spent
+            yield known, Ended("done", value, "", seconds, cpu_seconds)
 
     def _tasks(self) -> Iterator[tuple[dict[str, Any], Task]]:
         """What each run's row says before it is made, and what makes it."""

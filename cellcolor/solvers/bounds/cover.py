@@ -8,7 +8,6 @@ cells where a region holds both. (Files call this kind of bound ``strangers``.)
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import ceil
@@ -121,8 +120,6 @@ def _hard_cells_of(
 ) -> list[int] | None:
     """:func:`hard_cells` of cells that no color region connects with others."""
     cells = _apart(group, touching)
-    if len(cells) < value:
-        cells = max(cells, _independent_set(group, touching, deadline), key=len)
     if len(cells) >= value:
         return cells[:value]
     hardest_first = sorted(group, key=lambda cell: len(touching[cell]))
@@ -136,25 +133,6 @@ def _hard_cells_of(
             return None
         cells.append(cell)
     return None
-
-
-def _independent_set(
-    group: Sequence[int], touching: Sequence[set[int]], deadline: Deadline
-) -> list[int]:
-    """Many cells no two of which lie in one color region; if time allows, a maximum packing."""
-    from ortools.sat.python import cp_model
-
-    model = cp_model.CpModel()
-    chosen = [model.new_bool_var("") for _ in group]
-    own: dict[int, list[cp_model.IntVar]] = defaultdict(list)
-    for cell, literal in zip(group, chosen, strict=True):
-        for number in sorted(touching[cell]):
-            own[number].append(literal)
-    for literals in own.values():
-        model.add_at_most_one(literals)
-    model.maximize(sum(chosen))
-    found, _ = _solve(model, chosen, CERTIFICATE_EFFORT, deadline)
-    return [group[place] for place in sorted(found or ())]
 
 
 def greedy_independent_set(regions: Sequence[Region]) -> list[int]:

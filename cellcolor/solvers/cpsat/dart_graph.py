@@ -102,12 +102,8 @@ def dart_graph(
     return DartGraph(darts, tuple(lists), colors, tuple(seams or ()))
 
 
-def widened(
-    instance: Instance,
-    strands: Mapping[int, int],
-    most: int | None = None,
-    *,
-    each_alone: bool = False,
+def wide_enough_seams(
+    instance: Instance, strands: Mapping[int, int], most: int | None = None
 ) -> tuple[Seam, ...]:
     """Seams from the first live loop of every cell to its other live loops.
 
@@ -116,7 +112,6 @@ def widened(
     Args:
         strands: of each live edge.
         most: of each seam.
-        each_alone: as many as each needs without the others.
 
     Raises:
         TooLarge: the seams would need too many strands.
@@ -127,8 +122,7 @@ def widened(
         for _ in own[1:]:
             enough = max(0, darts // 2 - (len(own) == 2))
             widths.append(enough if most is None else min(enough, most))
-            if not each_alone:
-                darts += 2 * enough  # on both sides of this seam
+            darts += 2 * enough  # on both sides of this seam
     if sum(widths) > MOST_STRANDS:
         message = f"{sum(widths)} strands of seams, {MOST_STRANDS} are the most"
         raise TooLarge(f"The model was not built: it would need {message}.")
@@ -137,8 +131,15 @@ def widened(
 
 
 def complete_graph(instance: Instance, strands: Mapping[int, int]) -> DartGraph:
-    """The graph in which every scheme can be drawn: with seams as :func:`widened`."""
-    return dart_graph(instance, strands, widened(instance, strands))
+    """The graph in which every scheme can be drawn, with so many strands of each live edge."""
+    own = {edge: strands[edge] for edge in instance.live_edges}
+    return dart_graph(instance, own, wide_enough_seams(instance, own))
+
+
+def narrow_graph(instance: Instance, most: int) -> DartGraph:
+    """The graph with one strand of each live edge, and at most so many of each seam."""
+    once = dict.fromkeys(instance.live_edges, 1)
+    return dart_graph(instance, once, wide_enough_seams(instance, once, most))
 
 
 def seam_places(instance: Instance) -> tuple[Seam, ...]:

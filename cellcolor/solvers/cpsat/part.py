@@ -7,7 +7,6 @@ when that comes first; what it has found by then is kept.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import cached_property
 from itertools import combinations, product
 from math import ceil, isfinite
 from random import Random
@@ -28,9 +27,9 @@ from cellcolor.solvers.bounds.cover import (
 )
 from cellcolor.solvers.cpsat.dart_graph import (
     DartGraph,
-    dart_graph,
+    complete_graph,
     enough_crossings,
-    widened,
+    narrow_graph,
 )
 from cellcolor.solvers.cpsat.exact_shapes import exact_minimum, painting_of_areas
 from cellcolor.solvers.cpsat.formulation import SectorModel
@@ -40,8 +39,9 @@ from cellcolor.solvers.cpsat.segment_plans import Planner, SegmentPlan, Undecide
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.interruptible import Runner
 
-FEW_STRANDS = 2
-"""Strands of a seam in local search."""
+FEW_STRANDS, SOME_STRANDS = 2, 4
+"""The most strands of a seam in local search, and in the model that comes before the complete one:
+more would make of a cell with many loops a list of many darts."""
 
 MOST_RINGS = 3
 """Rings of sectors in local search, one more from turn to turn. More leave more room."""
@@ -76,7 +76,7 @@ class Part:
         best: the best division, on its dart graph; it has as many segments as ``segments``.
         bound: no division in the search space has fewer segments.
         surface_bound: no division of the surface has fewer.
-        by: what proved ``bound``: the kind of bound.
+        bound_kind: what proved ``bound``.
         cover_bound: the size of a smallest cover, or what is proved of it.
         model_size: how large the complete model is, if it was solved.
         notes: models that were not built, and why, a sentence each.
@@ -93,10 +93,14 @@ class Part:
         self.instance, self.cells = instance, cells
         self._options, self._runner, self._report = options, runner, report
         self._enough = enough_crossings(instance)
-        self._once = dict.fromkeys(self._enough, 1)
+        # Of each live edge as many strands as were asked for and can be needed.
+        self._strands = {
+            edge: int(min(options.strands, enough)) for edge, enough in self._enough.items()
+        }
+        self._narrow = narrow_graph(instance, FEW_STRANDS)
         self.regions = color_regions(instance)
         self.bound = self.surface_bound = len(greedy_independent_set(self.regions))
-        self.by = "strangers"
+        self.bound_kind = "strangers"
         self.cover_bound = self.bound
         self.planner: Planner | None = None
         self.model_size: ModelSize | None = None
@@ -140,7 +144,7 @@ class Part:
             return
         segments, areas = found
         self._keep(self._narrow, painting_of_areas(self._narrow, areas))
-        if max(self._widest.values(), default=1) == 1:
+        if max(self._strands.values(), default=1) == 1:
             self._raise_to(segments, "exact", for_surface=False)
 
     def improve(self, turn: int, deadline: Deadline) -> None:
@@ -307,29 +311,16 @@ class Part:
         self._raise_to(ceil(bound - 1e-6), "model", for_surface=False)
 
     @property
-    def _widest(self) -> dict[int, int]:
-        """As many strands of each live edge as were asked for and can be needed."""
-        most = self._options.strands
-        return {edge: int(min(most, enough)) for edge, enough in self._enough.items()}
-
-    @property
     def _stages(self) -> tuple[bool, ...]:
         """Whether models are built on the complete graph: at once, or after a narrow one."""
-        same = self._once == self._widest and self.instance.most_live_loops < 3
-        return (True,) if same else (False, True)
+        few = max((seam.strands for seam in self._narrow.seams), default=0) < FEW_STRANDS
+        return (True,) if few and max(self._strands.values(), default=1) == 1 else (False, True)
 
     def _graph(self, instance: Instance, *, complete: bool) -> DartGraph:
         """The part's darts in some of its colors, with all strands ever needed or with few."""
-        strands = self._widest if complete else self._once
-        strands = {edge: strands[edge] for edge in instance.live_edges}
-        seams = widened(instance, strands, each_alone=not complete)
-        return dart_graph(instance, strands, seams)
-
-    @cached_property
-    def _narrow(self) -> DartGraph:
-        """The part's darts with one strand of each edge, and few of each seam."""
-        seams = widened(self.instance, self._once, FEW_STRANDS)
-        return dart_graph(self.instance, self._once, seams)
+        if complete:
+            return complete_graph(instance, self._strands)
+        return narrow_graph(instance, SOME_STRANDS)
 
     def _covered(self, regions: Sequence[Region]) -> tuple[DartGraph, Painting]:
         """Every cell painted whole in the color of the last region that has it."""
@@ -366,7 +357,7 @@ class Part:
     def _raise_to(self, bound: int, kind: str, *, for_surface: bool) -> None:
         """A bound that is proved, in the search space alone or for any division of the surface."""
         if bound > self.bound:
-            self.bound, self.by = bound, kind
+            self.bound, self.bound_kind = bound, kind
             self._report()
         if for_surface:
             self.surface_bound = max(self.surface_bound, bound)

@@ -204,7 +204,7 @@ class _Search:
             return (Bound("strangers", len(apart), "surface"),)
         certificate = conflict_certificate(self._parts)
         document = None if certificate is None else certificate.to_document()
-        by = {part.by for part in self._parts}
+        by = {part.bound_kind for part in self._parts}
         separated = sum(part.surface_bound for part in self._parts)
         bounds = [
             Bound("cover", sum(part.cover_bound for part in self._parts), "surface"),

@@ -97,7 +97,7 @@ def test_plans_that_are_decided_one_by_one_prove_the_minimum(seed: int, petals: 
         part.separate(4.0, NEVER, decide=True)
     assert part.done and part.segments == solve(instance, Options(), "dfs").segments
     if (seed, petals) == (0, 3):  # no pair of its segments has to cross, but four of them would
-        assert (part.by, part.surface_bound, part.bound) == ("exact", 3, 4)
+        assert (part.bound_kind, part.surface_bound, part.bound) == ("exact", 3, 4)
 
 
 @pytest.mark.parametrize(
