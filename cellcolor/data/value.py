@@ -71,7 +71,13 @@ class Value:
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object, without members that are left at their defaults."""
-        return members_of(self)
+        return self._dumped(short=True)
+
+    def _dumped(self, short: bool) -> dict[str, Any]:
+        found: dict[str, Any] = adapter_of(type(self)).dump_python(
+            self, mode="json", by_alias=True, exclude_defaults=short
+        )
+        return found
 
 
 class Document(Value):
@@ -95,9 +101,10 @@ class Document(Value):
 
     def to_document(self) -> dict[str, Any]:
         head = {"format": self.FORMAT, "version": 1 + len(self.ADDED)}
-        members = members_of(self, self.ALWAYS)
-        last = {name: members.pop(name) for name in self.LAST if name in members}
-        return head | members | last
+        given, whole = self._dumped(short=True), self._dumped(short=False)
+        names = [name for name in whole if name in given or name in self.ALWAYS]
+        names.sort(key=lambda name: name in self.LAST)
+        return head | {name: given.get(name, whole[name]) for name in names}
 
     def to_json(self) -> str:
         """The file's text."""
@@ -140,33 +147,15 @@ class AboutAFile(Document):
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object, the file's name first."""
-        members = every_member_of(self)
+        members = self._dumped(short=False)
         file = members.pop("file")
         head = {} if file is None else {"file": file}
         return head | {"format": self.FORMAT, "version": 1} | members
 
 
-def members_of(value: Any, always: Collection[str] = ()) -> dict[str, Any]:
-    """The members of a dataclass as JSON has them, without those left at their defaults."""
-    adapter = adapter_of(type(value))
-    given = adapter.dump_python(value, mode="json", by_alias=True, exclude_defaults=True)
-    whole = adapter.dump_python(value, mode="json", by_alias=True)
-    return {
-        name: given.get(name, content)
-        for name, content in whole.items()
-        if name in given or name in always
-    }
-
-
 def named_members(value: Any, *names: str) -> dict[str, Any]:
     """Some members and properties of a dataclass as JSON has them, in this order."""
     found: dict[str, Any] = to_jsonable_python({name: getattr(value, name) for name in names})
-    return found
-
-
-def every_member_of(value: Any) -> dict[str, Any]:
-    """The members of a dataclass as JSON has them, and null for what is None."""
-    found: dict[str, Any] = adapter_of(type(value)).dump_python(value, mode="json")
     return found
 
 

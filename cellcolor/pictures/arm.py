@@ -98,7 +98,7 @@ def surroundings(prepared: PreparedScene) -> list[Layer]:
         faces = body.faces
         if scene.collision_object is None and scene.cover is not None:
             # What is covered lies in the same place, and would be hidden.
-            faces = faces[~scene.cover.chosen(body, scene.folder)]
+            faces = faces[~scene.cover.chosen(body)]
         body = body.placed(scene.placement)
         layers.append(Layer("collision object", BODY, body.vertices, faces))
     if scene.obstacle:
