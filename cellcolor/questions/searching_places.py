@@ -11,14 +11,12 @@ is the same as if all were built.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 
-from cellcolor.deadline import NEVER, Deadline, OutOfTime
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import CellcolorError, InputError
 from cellcolor.frontend.scene import Scene
 from cellcolor.processes import Task, as_they_end
 from cellcolor.questions.placements import (
-    Leeway,
     PlacedMinimum,
     PlacementQuestion,
     Placements,
@@ -27,7 +25,6 @@ from cellcolor.questions.placements import (
 from cellcolor.questions.placing import (
     around,
     coarse_scene,
-    displaced,
     distance,
     is_inside,
     minima_at,
@@ -40,8 +37,6 @@ _CLOSER = (0.3, 0.15, 0.08, 0.04, 0.02)
 """Shares of the ranges, of the boxes around the best placements; by measure (docs/questions.md)."""
 _AROUND = 3  # placements that get boxes
 _NEXT = 0.05  # of the ranges; of placements nearer to each other one is enough
-_BESIDE = 64  # samples of how far a placement may be off
-_TOGETHER = 16  # of them, before it is asked whether they hold
 _BATCH = 32  # placements per task; reading the scene takes as long as one or two of them
 _ATTEMPTS = 2  # how often a task is tried whose process was lost
 _ENDING = 10.0  # s that a process may take beyond its time
@@ -147,11 +142,6 @@ class _Search:
         rows = self._minima(self._scene, _OWN, self._chosen, self._cover)
         self._listed = self._best_of(self._scene, _OWN, rows, asked.best, self._cover)
         self._others = [row for row in rows if row not in self._listed]
-        if asked.leeway is None:
-            return
-        for number, row in enumerate(self._listed):
-            self._report(f"how far placement {number + 1} may be off")
-            self._listed[number] = replace(row, leeway=self._leeway(row, asked.leeway))
 
     def found(self) -> Placements:
         """The answer."""
@@ -248,19 +238,3 @@ class _Search:
             if (row.segments or row.at_least) and apart and len(chosen) < count:
                 chosen.append(row)
         return chosen
-
-    def _leeway(self, placed: PlacedMinimum, up_to_m: float) -> Leeway:
-        """How far the part may be off a placement before its lift-offs rise."""
-        vertices = self._scene.covered(NEVER).vertices
-        beside = displaced(vertices, placed.pose, up_to_m, _BESIDE, self._question.seed)
-        holds, least = 0.0, placed.covered_share
-        for first in range(0, _BESIDE, _TOGETHER):
-            some = beside[first : first + _TOGETHER]
-            rows = self._minima(self._scene, _OWN, [pose for _, pose in some])
-            if len(rows) < len(some):
-                raise OutOfTime
-            for number, ((off, _), row) in enumerate(zip(some, rows, strict=True), first + 1):
-                if row.segments is None or row.segments > (placed.segments or 0):
-                    return Leeway(holds, off, number, least)
-                holds, least = off, min(least, row.covered_share)
-        return Leeway(holds, None, _BESIDE, least)
