@@ -170,6 +170,15 @@ class Body:
         """Distance between the ends in m."""
         return float(np.linalg.norm(self.end - self.start))
 
+    @property
+    def outline(self) -> Array:
+        """The ends (2, 3) of its axis, or the corners (8, 3) around a solid, m.
+
+        No point of the axis or the solid moves farther than one of these: its displacement is a
+        mean of theirs.
+        """
+        return np.array([self.start, self.end]) if self.solid is None else self.solid.corners
+
     @cached_property
     def shape(self) -> Shape:
         """The shape in the frame of the joint."""
