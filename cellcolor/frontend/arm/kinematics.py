@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array, Mask, unit
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.robot import FREE_TURN, Robot, TaskSpace
-from cellcolor.frontend.setup import Continuity, Setup, Thresholds
+from cellcolor.frontend.setup import Setup
 
 TASK_JOINTS = FREE_TURN.joints  # a sixth turns about the tool's own axis and does not move the task
 
@@ -250,28 +250,25 @@ def conditioning(setup: Setup, reach: float, robot: Robot) -> Conditioning:
     Raises:
         InputError: one is in cubic meters and the measures are not; names the key.
     """
-    limits, policy = setup.thresholds, setup.continuity
-    lengths = robot.task.lengths - int(robot.slides.sum())
-    return Conditioning(
-        _measure("thresholds", limits, "min_manipulability", reach, lengths),
-        _measure("thresholds", limits, "min_task_determinant", reach, lengths),
-        _measure("continuity", policy, "near_singular_determinant", reach, lengths),
-    )
+    lengths, found = robot.task.lengths - int(robot.slides.sum()), {}
+    for table, name in _MEASURES:
+        given = getattr(setup, table)
+        share, absolute = getattr(given, name), getattr(given, f"{name}_m3")  # the setup has one
+        if absolute is not None and lengths != 3:
+            message = (
+                f"of this arm it is no volume, but m^{lengths}: give a share of that power of the "
+                f"reach, {name}"
+            )
+            raise InputError(None, f"{table}.{name}_m3", message)
+        found[name] = float(share * reach**lengths if absolute is None else absolute)
+    return Conditioning(**found)
 
 
-def _measure(
-    table: str, given: Thresholds | Continuity, name: str, reach: float, lengths: int
-) -> float:
-    absolute, share = getattr(given, f"{name}_m3"), getattr(given, name)
-    if absolute is None:
-        return float(share * reach**lengths)  # one of both: the setup has been checked
-    if lengths != 3:
-        message = (
-            f"of this arm it is no volume, but m^{lengths}: give a share of that power of the "
-            f"reach, {name}"
-        )
-        raise InputError(None, f"{table}.{name}_m3", message)
-    return float(absolute)
+_MEASURES = (
+    ("thresholds", "min_manipulability"),
+    ("thresholds", "min_task_determinant"),
+    ("continuity", "near_singular_determinant"),
+)
 
 
 def nearest_points(p: Array, u: Array, q: Array, v: Array) -> tuple[Array, Array]:
