@@ -64,7 +64,6 @@ from cellcolor.questions.answers import Explanation as Explanation
 from cellcolor.questions.answers import Front as Front
 from cellcolor.questions.answers import FrontPoint as FrontPoint
 from cellcolor.questions.answers import RelaxedMinimum as RelaxedMinimum
-from cellcolor.questions.placements import Leeway as Leeway
 from cellcolor.questions.placements import PlacedMinimum as PlacedMinimum
 from cellcolor.questions.placements import Placements as Placements
 from cellcolor.questions.places import WorldBox as WorldBox

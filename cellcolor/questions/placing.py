@@ -21,8 +21,7 @@ from math import ceil
 import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import csr_array, hstack, identity
-from scipy.spatial.transform import Rotation
-from scipy.stats import norm, qmc
+from scipy.stats import qmc
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import Deadline, OutOfTime
@@ -31,7 +30,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.build import StageClock, build_prepared, judged_at_vertices
 from cellcolor.frontend.contact.engine import meet
 from cellcolor.frontend.links import continuous_along
-from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
+from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.remeshing import fold_angle, folds, length_for, remeshed
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.colors import regions
@@ -100,7 +99,6 @@ def _fewest(region: Index, valid: Mask, weights: Array, cover: float, deadline: 
     return 1 if bound is None or not np.isfinite(bound) else max(1, ceil(bound - _SLACK))
 
 
-_FITTED = 4  # times that a displacement is scaled; a turn moves points along arcs
 _NOTHING = "the arm reaches nothing of it"
 _FINE_ENOUGH = 1.5  # times the vertices that are wanted; a mesh up to there is not made coarser
 
@@ -136,44 +134,6 @@ def distance(ranges: Ranges, first: Pose, second: Pose) -> float:
         for name, (low, high) in ranges.items()
         for at in [VARIABLES.index(name)]
     )
-
-
-def displaced(
-    vertices: Array, pose: Pose, up_to_m: float, count: int, seed: int
-) -> list[tuple[float, Pose]]:
-    """Placements all around one, the nearest first, at even steps from none to the farthest.
-
-    Each comes after the distance by which it moves the vertex that it moves farthest, m.
-
-    The part is shifted and turned about its middle, by as much as each other, in directions that
-    are spread evenly (a scrambled Sobol sequence).
-
-    Args:
-        vertices: (n, 3) of the part in its own frame, m.
-        pose: where it stands.
-        up_to_m: no vertex is moved farther.
-        count: how many.
-        seed: of the sequence.
-    """
-    turn = rotation_from_rpy(*pose[3:])
-    here = vertices @ turn.T + np.array(pose[:3])
-    middle = (here.min(axis=0) + here.max(axis=0)) / 2
-    size = float(np.linalg.norm(here - middle, axis=1).max()) or 1.0
-    directions = norm.ppf(np.clip(_sobol(6, count, seed), 1e-9, 1 - 1e-9))
-    found: list[tuple[float, Pose]] = []
-    for number, direction in enumerate(directions, 1):
-        wanted = up_to_m * number / count
-        shift, about = direction[:3], direction[3:] / size
-        scale, off = 0.0, 0.0
-        for _ in range(_FITTED):
-            scale = scale * wanted / off if off else wanted / float(np.linalg.norm(direction))
-            more = Rotation.from_rotvec(scale * about).as_matrix()
-            moved = (here - middle) @ more.T + middle + scale * shift
-            off = float(np.linalg.norm(moved - here, axis=1).max())
-        position = more @ (np.array(pose[:3]) - middle) + middle + scale * shift
-        angles = Rotation.from_matrix(more @ turn).as_euler("xyz")
-        found.append((off, (*position.tolist(), *angles.tolist())))
-    return sorted(found)
 
 
 def _sobol(dimensions: int, count: int, seed: int) -> Array:

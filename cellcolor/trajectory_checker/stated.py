@@ -18,17 +18,16 @@ from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import POSE_ANGLE, POSE_DISTANCE
 
 
-def judge_poses(
-    trajectory: Trajectory, robot: Robot, tips: Array, axes: Array, faults: FaultList
-) -> None:
+def judge_poses(robot: Robot, axes: Array, faults: FaultList) -> None:
     """Note samples whose stated point or normal is another one.
 
     Joints only give the normal where the task holds the tool against it.
 
     Args:
-        tips, axes: (k, 3) what forward kinematics gives, m and unit vectors.
+        axes: (k, 3) of the tool, unit vectors, as forward kinematics gives them.
     """
-    apart = np.linalg.norm(trajectory.points - tips, axis=1)
+    trajectory = faults.trajectory
+    apart = np.linalg.norm(trajectory.points - faults.tips, axis=1)
     turned = np.zeros(len(axes))
     if robot.task.direction:
         lengths = np.linalg.norm(trajectory.normals, axis=1)
@@ -42,16 +41,16 @@ def judge_poses(
             f"the joints put the tip {1000 * apart[k]:.4g} mm off the trajectory's own point, the "
             f"tool's axis {np.degrees(turned[k]):.4g} degrees off its own normal"
         ),
-        tips,
     )
 
 
-def judge_lift_offs(trajectory: Trajectory, minimum: int | None, faults: FaultList) -> None:
+def judge_lift_offs(minimum: int | None, faults: FaultList) -> None:
     """Note lift-offs that are stated but not there, and a number that the proof contradicts.
 
     The proof is for the whole surface. Where a segment is stated to be left out and is never
     touched, one fewer does not contradict it: with that segment the division would be whole again.
     """
+    trajectory = faults.trajectory
     ends = {after - 1 for _, after in trajectory.strokes[:-1]}
     stated = {extra.sample for extra in trajectory.extra_lift_offs}
     for extra in trajectory.extra_lift_offs:

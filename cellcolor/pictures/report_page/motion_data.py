@@ -16,7 +16,7 @@ from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import Fault
 from cellcolor.decomposition import Decomposition
-from cellcolor.exports.samples import via_points
+from cellcolor.exports.interface import via_points
 from cellcolor.frontend.arm.kinematics import (
     forward,
     manipulability,
