@@ -15,8 +15,7 @@ import re
 
 import numpy as np
 
-from cellcolor.exports.interface import PlannedMotion
-from cellcolor.exports.samples import Samples, stretches
+from cellcolor.exports.interface import PlannedMotion, Samples, stretches
 from cellcolor.files.writing import FileKind
 
 _COLUMNS = ("time_s", "segment", "contact", "x", "y", "z", "nx", "ny", "nz")

@@ -21,9 +21,9 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.questions.answers import Front, FrontPoint
 from cellcolor.solvers import checked
 from cellcolor.solvers.bounds.cover import color_regions
-from cellcolor.solvers.cpsat.complete_model import least_left_out
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
+from cellcolor.solvers.other_objectives import least_left_out
 
 _WHOLE = 2**40
 """The integer weight of all cells together, for CP-SAT: a share is exact to about 1e-12."""

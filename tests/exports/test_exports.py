@@ -16,9 +16,8 @@ from waves import driven
 
 from cellcolor.data.trajectory import Trajectory, read_trajectory_csv
 from cellcolor.errors import InputError
-from cellcolor.exports.interface import PlannedMotion
+from cellcolor.exports.interface import PlannedMotion, stretches
 from cellcolor.exports.registry import EXPORTS, exported
-from cellcolor.exports.samples import stretches
 from examples import examples
 
 

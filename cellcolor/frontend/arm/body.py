@@ -6,7 +6,7 @@ Each engine makes of a shape what it works with.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -16,7 +16,7 @@ import igl
 import numpy as np
 import pinocchio as pin
 import trimesh
-from scipy.spatial import ConvexHull, QhullError
+from scipy.spatial import QhullError
 
 from cellcolor.arrays import Array, Index
 from cellcolor.errors import InputError
@@ -106,22 +106,6 @@ class Shape:
             faces = np.array(mesh.faces, dtype=np.int64)
         return points @ self.rotation.T + self.origin, faces
 
-    @property
-    def width(self) -> float:
-        """The second of its three extents, m: of a plate not how thick it is."""
-        if self.kind == "half-space":
-            return np.inf
-        if self.kind == "sphere":
-            return 2 * self.sizes[0]
-        extents: Sequence[float] = self.sizes
-        if self.kind in ("cylinder", "cone", "capsule"):
-            across = 2 * self.sizes[0]
-            extents = (across, across, self.sizes[1] + (across if self.kind == "capsule" else 0.0))
-        elif self.kind != "box":
-            cell = self.sizes[0] if self.kind == "cells" else 0.0
-            extents = (np.ptp(self.vertices, axis=0) + cell).tolist()
-        return sorted(extents)[1]
-
 
 def one_of_each_part(vertices: Array, faces: Index) -> Array:
     """A vertex (parts, 3) of each part of a mesh whose faces hang together."""
@@ -133,15 +117,10 @@ def one_of_each_part(vertices: Array, faces: Index) -> Array:
 def convex_hull(points: Array) -> Shape | None:
     """The convex hull of points (n, 3); None if they lie in a plane."""
     try:
-        hull = ConvexHull(points)
+        hull = trimesh.convex.convex_hull(points)
     except (QhullError, ValueError):
         return None
-    faces = hull.simplices.astype(np.int64)
-    a, b, c = (points[faces[:, k]] for k in range(3))
-    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
-    faces[inward] = faces[inward][:, ::-1]
-    kept, faces = np.unique(faces, return_inverse=True)
-    return Shape("hull", vertices=points[kept], faces=faces.reshape(-1, 3))
+    return Shape("hull", vertices=np.array(hull.vertices), faces=np.array(hull.faces))
 
 
 _SAME = 1e-6  # m; a sphere's center and a cylinder's end nearer than this are one point
@@ -169,6 +148,15 @@ class Body:
     def length(self) -> float:
         """Distance between the ends in m."""
         return float(np.linalg.norm(self.end - self.start))
+
+    @property
+    def outline(self) -> Array:
+        """The ends (2, 3) of its axis, or the corners (8, 3) around a solid, m.
+
+        No point of the axis or the solid moves farther than one of these: its displacement is a
+        mean of theirs.
+        """
+        return np.array([self.start, self.end]) if self.solid is None else self.solid.corners
 
     @cached_property
     def shape(self) -> Shape:
