@@ -16,7 +16,7 @@ import igl
 import numpy as np
 import pinocchio as pin
 import trimesh
-from scipy.spatial import QhullError
+from scipy.spatial import ConvexHull, QhullError
 
 from cellcolor.arrays import Array, Index
 from cellcolor.errors import InputError
@@ -117,10 +117,15 @@ def one_of_each_part(vertices: Array, faces: Index) -> Array:
 def convex_hull(points: Array) -> Shape | None:
     """The convex hull of points (n, 3); None if they lie in a plane."""
     try:
-        hull = trimesh.convex.convex_hull(points)
+        hull = ConvexHull(points)
     except (QhullError, ValueError):
         return None
-    return Shape("hull", vertices=np.array(hull.vertices), faces=np.array(hull.faces))
+    faces = hull.simplices.astype(np.int64)
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
+    faces[inward] = faces[inward][:, ::-1]
+    kept, faces = np.unique(faces, return_inverse=True)
+    return Shape("hull", vertices=points[kept], faces=faces.reshape(-1, 3))
 
 
 _SAME = 1e-6  # m; a sphere's center and a cylinder's end nearer than this are one point
