@@ -1,8 +1,8 @@
 """Gecode and Chuffed on the MiniZinc model, run by the program ``minizinc``.
 
 The model is ``models/constraints/coloring.mzn``; ``docs/models.md`` says what it has and why. It
-shares the color regions with other solvers, nothing else. Neither solver gives a bound before it has searched
-everything, so there is a bound with the last solution or none.
+shares nothing but the color regions with other solvers. Neither solver gives a bound before it has
+searched everything, so there is a bound with the last solution or none.
 """
 
 from __future__ import annotations
