@@ -13,7 +13,6 @@ from cellcolor.cli.options import (
     COUNT,
     INPUT,
     LEFT_ALONE,
-    LENGTH,
     PATH,
     SHARE,
     TIME_LIMIT,
@@ -107,7 +106,7 @@ def explain(scene: Path, as_json: bool, **search: Any) -> Exit:
 @keywords(x=_RANGE, y=_RANGE, z=_RANGE, roll=_RANGE, pitch=_RANGE, yaw=_RANGE)
 @keywords(cover=SHARE, points=COUNT, best=COUNT, vertices=COUNT)
 @TOLERANCE
-@keywords(base=bool, leeway=LENGTH)
+@keywords(base=bool)
 @option(
     "--map",
     PATH,

@@ -107,7 +107,7 @@ class ContactPath(Value):
         if isinstance(trajectory, Trajectory):
             return cls(trajectory.joints, trajectory.points, trajectory.contact)
         points = None if trajectory.poses is None else trajectory.poses[:, :3]
-        return cls(trajectory.joints, points, trajectory.contact)
+        return cls(trajectory.joints, points, trajectory.marked("contact"))
 
     @property
     def stroke(self) -> NDArray[np.int64]:
@@ -125,18 +125,3 @@ class ContactPath(Value):
     def __repr__(self) -> str:
         samples, strokes = count(len(self.joints), "sample"), count(self.strokes, "stroke")
         return f"<{type(self).__name__}: {samples}, {strokes}>"
-
-
-@dataclass(frozen=True, eq=False)
-class VertexContacts:
-    """Where a path touches vertices in one of their colors, in the order of the path.
-
-    Attributes:
-        stroke: (c,) the stroke of each contact.
-        vertex: (c,) the vertex touched.
-        color: (c,) the color there, one of the vertex's.
-    """
-
-    stroke: NDArray[np.int64]
-    vertex: NDArray[np.int64]
-    color: NDArray[np.int64]

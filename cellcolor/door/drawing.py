@@ -130,7 +130,7 @@ def show(
     if path is not None:
         kind_of_picture(path_of(path))
     result = source if isinstance(source, Result) else None
-    subject = open_subject(source) if result is None else result.subject
+    subject = source.subject if isinstance(source, Result) else open_subject(source)
     usual = "graph"
     if subject.names_surface:
         usual = "segments" if result is not None and result.solution.cells is not None else "cells"

@@ -5,13 +5,12 @@ What holds of the coloring that a tool path makes is proved in docs/semantics.md
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from cellcolor.arrays import Array
-from cellcolor.data.plan import ContactPath, JointPlan, Plan, VertexContacts
+from cellcolor.arrays import Array, Index
+from cellcolor.data.plan import ContactPath, JointPlan, Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import Trajectory, TrajectoryTable
 from cellcolor.deadline import NEVER, Deadline
@@ -26,24 +25,6 @@ AnyPath: TypeAlias = ContactPath | Trajectory | TrajectoryTable
 """A tool path with its joints."""
 
 _NO_COLOR = -1  # in a plan: a configuration of no color, which no vertex has
-
-
-@dataclass(frozen=True)
-class ContactColoring:
-    """What a path's contacts make of a surface.
-
-    Attributes:
-        plan: each vertex in the color of its first contact, None without any.
-        color_changes: how often the color changes in contact: between one contact and the next of
-            the same stroke.
-        runs: into how many stretches the contacts fall that are in the color of ``plan``, if they
-            are cut wherever the stroke ends, the color changes, or the path does not stay at its
-            vertex or go on to a neighbor along an uncracked edge.
-    """
-
-    plan: Plan
-    color_changes: int
-    runs: int
 
 
 def colors_of_joints(
@@ -98,9 +79,9 @@ def path_verdict(subject: Subject, given: AnyPath, deadline: Deadline = NEVER) -
     path = given if isinstance(given, ContactPath) else ContactPath.of(given)
     found = touches(built, path, deadline)
     surface = built.surface
-    coloring = coloring_of(surface, found.contacts)
+    plan, changes, runs = coloring_of(surface, found.stroke, found.vertex, found.color)
     reachable = [vertex for vertex, own in enumerate(surface.vertex_colors) if own]
-    missing = [v for v in reachable if coloring.plan.vertex_colors[v] is None]
+    missing = [v for v in reachable if plan.vertex_colors[v] is None]
     violations = []
     for vertex in missing:
         joints: Array | None = None
@@ -124,18 +105,32 @@ def path_verdict(subject: Subject, given: AnyPath, deadline: Deadline = NEVER) -
         None,
         tuple(violations),
         surface=surface,
-        plan=coloring.plan,
+        plan=plan,
         strokes=path.strokes,
-        color_changes=coloring.color_changes,
-        runs=None if problems else coloring.runs,
+        color_changes=changes,
+        runs=None if problems else runs,
         reachable=len(reachable),
         untouched=len(missing),
     )
 
 
-def coloring_of(surface: LabelledSurface, contacts: VertexContacts) -> ContactColoring:
-    """The coloring that the first contacts make, and the path's stretches in it."""
-    stroke, vertex, color = contacts.stroke, contacts.vertex, contacts.color
+def coloring_of(
+    surface: LabelledSurface, stroke: Index, vertex: Index, color: Index
+) -> tuple[Plan, int, int]:
+    """The coloring that the first contacts make, and the path's stretches in it.
+
+    Args:
+        stroke, vertex, color: (c,) of each contact, in the order of the path.
+
+    Returns:
+        The plan with each vertex in the color of its first contact, None without any.
+
+        How often the color changes in contact: between a contact and the next of the same stroke.
+
+        Into how many stretches the contacts fall that are in the color of the plan, if they are cut
+        wherever the stroke ends, the color changes, or the path does not stay at its vertex or go
+        on to a neighbor along an uncracked edge.
+    """
     touched, first = np.unique(vertex, return_index=True)
     own = np.full(len(surface.vertices), -1, dtype=np.int64)
     own[touched] = color[first]
@@ -147,7 +142,7 @@ def coloring_of(surface: LabelledSurface, contacts: VertexContacts) -> ContactCo
         if stroke[one] == stroke[other] and color[one] == color[other]:
             joined += _adjoin(surface, int(vertex[one]), int(vertex[other]), int(color[one]))
     plan = Plan(tuple([None if number < 0 else number for number in own.tolist()]))
-    return ContactColoring(plan, changes, len(kept) - joined)
+    return plan, changes, len(kept) - joined
 
 
 def _adjoin(surface: LabelledSurface, a: int, b: int, color: int) -> bool:

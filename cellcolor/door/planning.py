@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import pi
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from cellcolor.data.wording import check_share, listed
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
@@ -112,25 +112,8 @@ def plan(
     return replace(planned, answered=answered, unanswered=unanswered)
 
 
-@dataclass(frozen=True)
-class _Driven:
-    """A division with its tool paths and the motion on them; some moves may be unplanned."""
-
-    plan: UnfinishedPlan
-    motion: MotionPlan
-
-    @property
-    def cut_off(self) -> str:
-        """The colors that the arm found no way to."""
-        return listed([self.plan.built.surface.colors[color] for color in self.motion.cut_off])
-
-    def without_cut_off(self) -> Subject | None:
-        """The surface without these colors; None if that changes nothing."""
-        built = self.plan.built
-        surface = built.surface.without_colors(self.motion.cut_off)
-        if surface.vertex_colors == built.surface.vertex_colors:
-            return None
-        return Subject(self.plan.subject.path, replace(built, surface=surface))
+_Driven: TypeAlias = tuple[UnfinishedPlan, "MotionPlan"]
+"""A division with its tool paths, and the motion on them; some moves may be unplanned."""
 
 
 class _Run:
@@ -166,19 +149,18 @@ class _Run:
             self._has(result=result)
             if result.solution.cells is None:
                 raise OutOfTime("the time limit came before any division was found")
-        best = self._best_of(subject, result)
-        self.so_far = best.plan
+        self.so_far, motion = self._best_of(subject, result)
         with self._clock.timed("judging"):
-            solution = best.plan.solution
+            solution = self.so_far.solution
             proved = solution if solution and solution.proved_for_surface else None
             verdict = check_trajectory(
-                best.plan.built,
-                best.motion.trajectory,
+                self.so_far.built,
+                motion.trajectory,
                 minimum_lift_offs=None if proved is None else proved.lift_offs,
                 deadline=self._deadline,
                 progress=self._progress,
             )
-        self._has(trajectory=best.motion.trajectory, verdict=verdict, seconds=self._clock.seconds)
+        self._has(trajectory=motion.trajectory, verdict=verdict, seconds=self._clock.seconds)
         return PlannedScene(**vars(self.so_far))
 
     def _best_of(self, subject: Subject, result: Result) -> _Driven:
@@ -187,13 +169,16 @@ class _Run:
         Such a division may have no more lift-offs than are proved with all colors.
         """
         tried = [self._driven(subject, result)]
-        least = tried[0].plan.solution
+        least = tried[0][0].solution
         while least is not None and least.proved_for_surface and len(tried) < _DIVISIONS:
-            rest = tried[-1].without_cut_off()
-            if rest is None:
+            built, motion = tried[-1][0].built, tried[-1][1]
+            surface = built.surface.without_colors(motion.cut_off)
+            if surface.vertex_colors == built.surface.vertex_colors:
                 break
+            rest = Subject(subject.path, replace(built, surface=surface))
+            colors = listed([surface.colors[color] for color in motion.cut_off])
             note = (
-                f"The arm found no way to what it would do in {tried[-1].cut_off}, so this division"
+                f"The arm found no way to what it would do in {colors}, so this division"
                 " does without, wherever it can. As many lift-offs are proved with all colors."
             )
             try:
@@ -204,7 +189,7 @@ class _Run:
                 tried.append(self._driven(rest, again))
             except OutOfTime:
                 break
-        return min(tried, key=lambda one: len(one.motion.trajectory.unplanned))
+        return min(tried, key=lambda one: len(one[1].trajectory.unplanned))
 
     def _has(self, **more: Any) -> None:
         self.so_far = replace(self.so_far, **more)
@@ -246,7 +231,7 @@ class _Run:
                 on_paths=lambda paths: self._has(paths=paths),
             )
         self._has(paths=motion.paths)
-        return _Driven(self.so_far, motion)
+        return self.so_far, motion
 
 
 def _with_motion(scene: Scene, changes: Mapping[str, Any]) -> Scene:

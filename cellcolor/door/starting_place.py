@@ -82,7 +82,9 @@ def best_place(
     greatest = max(
         float(verdicts.determinants[verdicts.valid].max(initial=0.0)) for _, verdicts in tried
     )
-    best, found = max(tried, key=lambda one: _merit(*one, greatest))  # the first of several
+    best, found = max(
+        tried, key=lambda one: _merit(one[0], one[1], greatest)
+    )  # the first of several
     if not found.valid.any():
         codes = Counter(code for _, verdicts in tried for code in verdicts.reasons.ravel().tolist())
         commonest = found.reason_names[codes.most_common(1)[0][0]]
@@ -107,7 +109,8 @@ def _merit(
 
     valid, good = verdicts.valid, 1.0 - color_costs(prepared.robot, verdicts, greatest)
     if not prepared.arm.named:  # columns are no postures
-        valid, good = valid.any(axis=1, keepdims=True), good.max(axis=1, keepdims=True)
+        valid = np.asarray(valid.any(axis=1, keepdims=True))
+        good = good.max(axis=1, keepdims=True)
     shares, worst = valid.mean(axis=0).round(2), np.quantile(good, _WORST, axis=0)
     share = float(valid.any(axis=1).mean().round(2))
     return share, *max(zip(shares.tolist(), worst.tolist(), strict=True))

@@ -15,9 +15,16 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from cellcolor.arrays import Array, Index
-from cellcolor.exports.interface import Export, NotForThisArm, PlannedMotion
+from cellcolor.exports.interface import (
+    Export,
+    NotForThisArm,
+    PlannedMotion,
+    Samples,
+    slopes,
+    stretches,
+    via_points,
+)
 from cellcolor.exports.languages import LANGUAGES, Job, Language, Move
-from cellcolor.exports.samples import Samples, slopes, stretches, via_points
 from cellcolor.frontend.setup import Controller
 
 if TYPE_CHECKING:

@@ -31,9 +31,11 @@ def settle(value: object) -> None:
     Raises:
         InputError: a member is not what its annotation says.
     """
-    names, adapter = _members(type(value))
+    kind: Any = type(value)
+    names, adapter = _members(kind)
     given = tuple([getattr(value, name) for name in names])
-    for name, before, content in zip(names, given, validated(adapter, given, names), strict=True):
+    settled: tuple[Any, ...] = validated(adapter, given, names)
+    for name, before, content in zip(names, given, settled, strict=True):
         if content is not before:
             object.__setattr__(value, name, content)
 

@@ -17,7 +17,7 @@ from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.reach.validity_tests import Verdicts
 from cellcolor.motion.following import joint_space
 from cellcolor.solvers.interface import Options
-from cellcolor.solvers.preferring import cost_of, preferred
+from cellcolor.solvers.other_objectives import cost_of, preferred
 
 _ROOMY = np.pi / 2
 """rad; a joint at least this far from its limits costs nothing."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from math import floor, isfinite
 from typing import Any
 
@@ -51,8 +51,6 @@ class PlacementQuestion:
         vertices: about how many the coarse mesh has on which placements are tried.
         base: move the arm's base instead of the part, upright; its ranges are those of the base in
             the scene's world, where it stands in the origin.
-        leeway: tell how far the best ones may be off before their lift-offs rise, tried up to so
-            many m.
         seed: for all random choices.
 
     Raises:
@@ -65,7 +63,6 @@ class PlacementQuestion:
     best: int = 3
     vertices: int = 300
     base: bool = False
-    leeway: float | None = None
     seed: int = 0
 
     @classmethod
@@ -79,10 +76,6 @@ class PlacementQuestion:
             if getattr(self, name) < 1:
                 raise InputError(None, name, f"must be 1 or more, is {getattr(self, name)}")
         check_share("cover", self.cover)
-        if self.base and self.leeway is not None:
-            raise InputError(None, "leeway", "is asked of a part only, not of a moved base")
-        if self.leeway is not None and not 0 < self.leeway < 1:
-            raise InputError(None, "leeway", f"must be from 0 to 1 m, is {self.leeway:g}")
         for name, own in self.ranges.items():
             self._check_range(name, own)
         if not self.ranges:
@@ -102,31 +95,6 @@ class PlacementQuestion:
             raise InputError(None, name, "the arm's base stays upright")
 
 
-@dataclass(frozen=True, slots=True)
-class Leeway:
-    """How far a part may be off its placement before its lift-offs rise; sampled, not proved.
-
-    Attributes:
-        holds_m: no vertex was moved farther in the samples, nearest first, before one needed more
-            lift-offs or could not be used. Each of them covers at least ``least_share``.
-        fails_m: how far that one was off; None if there was none.
-        tried: how many samples there were up to there.
-        least_share: of the whole surface, 0 to 1.
-    """
-
-    holds_m: float
-    fails_m: float | None
-    tried: int
-    least_share: float
-
-    def __str__(self) -> str:
-        text = f"no more lift-offs up to {1e3 * self.holds_m:.2g} mm off"
-        if self.fails_m is not None:
-            text += f", more at {1e3 * self.fails_m:.2g} mm"
-        share = f"at least {100 * self.least_share:.1f} % of the area"
-        return f"{text} ({count(self.tried, 'sample')}, {share})"
-
-
 @dataclass(frozen=True)
 class PlacedMinimum:
     """The fewest lift-offs where a part stands.
@@ -141,7 +109,6 @@ class PlacedMinimum:
             solved.
         vertices: of that mesh.
         refused: why the part cannot stand there, or "".
-        leeway: how far it may be off, where that was asked.
         at_least: of a placement that was not built whole, no division that covers enough has fewer
             segments; 0 of others.
     """
@@ -152,7 +119,6 @@ class PlacedMinimum:
     proved_for_surface: bool
     vertices: int
     refused: str = ""
-    leeway: Leeway | None = None
     at_least: int = 0
 
     @property
@@ -180,8 +146,8 @@ class PlacedMinimum:
         """The JSON object."""
         least = {"at_least_segments": self.at_least or self.segments}
         found = pose_document(self.pose) | named_members(self, "lift_offs", "segments") | least
-        found |= named_members(self, "covered_share", "proved_for_surface", "vertices", "refused")
-        return found | ({} if self.leeway is None else {"leeway": asdict(self.leeway)})
+        more = named_members(self, "covered_share", "proved_for_surface", "vertices", "refused")
+        return found | more
 
     def __str__(self) -> str:
         place, area = pose_in_words(self.pose), f"{100 * self.covered_share:.1f} % of the area"
@@ -229,10 +195,7 @@ class Placements:
         stands = "where the arm's base stands" if self.base else "where it stands"
         lines = [f"{self.name}: {stands}, {self.here}"]
         enough = [row for row in self.best if not row.rank(self.cover)[0]]
-        for number, row in enumerate(enough, 1):
-            lines.append(f"  {number}. {row}")
-            if row.leeway is not None:
-                lines.append(f"     {row.leeway}")
+        lines += [f"  {number}. {row}" for number, row in enumerate(enough, 1)]
         asked = f"{100 * self.cover:.1f} % of the area"
         if not enough:
             lines.append(f"  no placement that was tried covers {asked}{self._most()}")

@@ -10,24 +10,17 @@ is the same as if all were built.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 
-from cellcolor.deadline import NEVER, Deadline, OutOfTime
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import CellcolorError, InputError
 from cellcolor.frontend.scene import Scene
 from cellcolor.processes import Task, as_they_end
-from cellcolor.questions.placements import (
-    Leeway,
-    PlacedMinimum,
-    PlacementQuestion,
-    Placements,
-    Pose,
-)
+from cellcolor.questions.placements import PlacedMinimum, PlacementQuestion, Placements, Pose
 from cellcolor.questions.placing import (
     around,
     coarse_scene,
-    displaced,
     distance,
     is_inside,
     minima_at,
@@ -35,13 +28,10 @@ from cellcolor.questions.placing import (
     spread,
 )
 
-_OWN = "own"  # the mesh of the scene itself
 _CLOSER = (0.3, 0.15, 0.08, 0.04, 0.02)
 """Shares of the ranges, of the boxes around the best placements; by measure (docs/questions.md)."""
 _AROUND = 3  # placements that get boxes
 _NEXT = 0.05  # of the ranges; of placements nearer to each other one is enough
-_BESIDE = 64  # samples of how far a placement may be off
-_TOGETHER = 16  # of them, before it is asked whether they hold
 _BATCH = 32  # placements per task; reading the scene takes as long as one or two of them
 _ATTEMPTS = 2  # how often a task is tried whose process was lost
 _ENDING = 10.0  # s that a process may take beyond its time
@@ -67,148 +57,117 @@ def search_places(
         CellcolorError: a task failed, or its process was lost in every attempt.
     """
     report("where it stands")
-    search = _Search(scene, question, jobs, deadline, report)
+    start = (0.0,) * 6 if question.base else pose_of(scene.placement)
+    own = _OnMesh(scene, question, jobs, deadline, report)
+    if not own.look([start], whole=True):
+        raise OutOfTime
+    here = own.rows[start]
+    if question.cover is None and here.segments is None:
+        message = (
+            "say how much has to be covered: where the scene has it, the part cannot stand "
+            f"({here.refused or 'not solved in time'})"
+        )
+        raise InputError(None, "cover", message)
+    own.cover = here.covered_share if question.cover is None else question.cover
+    coarse, complete = replace(own, rows={}), True
+    best: list[PlacedMinimum] = []
+    others: list[PlacedMinimum] = []
     try:
-        search.try_on_coarse_mesh()
-        search.prove()
+        report("a coarse mesh")
+        coarse.scene = coarse_scene(scene, question.vertices, deadline)
+        chosen = _best_on_coarse_mesh(coarse, start)
+        report("proving the best ones")
+        looked_at = [row.pose for row in own.look(chosen)]
+        best = own.best_of(looked_at, question.best)
+        others = [own.rows[pose] for pose in looked_at if own.rows[pose] not in best]
     except OutOfTime:
-        search.complete = False
-    return search.found()
+        complete = False
+    return Placements(
+        scene.name,
+        own.cover,
+        here,
+        tuple(best),
+        (*coarse.rows.values(), *others),
+        complete and own.complete and coarse.complete,
+        question.base,
+    )
 
 
-class _Search:
-    """What is known so far.
+def _best_on_coarse_mesh(coarse: _OnMesh, start: Pose) -> list[Pose]:
+    """Try placements all over the ranges, then around the best ones; twice as many as are asked."""
+    asked = coarse.question
+    if asked.cover is None:
+        # The share of a coarse mesh is another one: like is compared with like.
+        for row in coarse.look([start], whole=True):
+            coarse.cover = row.covered_share
+    coarse.look([start, *spread(asked.ranges, start, asked.points, asked.seed)])
+    each = max(asked.points // 20, 1)
+    for number, share in enumerate(_CLOSER, 1):
+        near: list[Pose] = []
+        for turn, row in enumerate(coarse.best_of(coarse.rows, _AROUND)):
+            seed = asked.seed + 10 * number + turn
+            near += around(asked.ranges, row.pose, share, each, seed)
+        coarse.look(near)
+    return [row.pose for row in coarse.best_of(coarse.rows, 2 * asked.best)]
+
+
+@dataclass
+class _OnMesh:
+    """Placements of a scene on one mesh.
 
     Attributes:
-        complete: whether the time limit left nothing out.
+        cover: the share that is enough.
+        rows: what is known of each placement, in the order in which they were asked.
+        complete: whether the deadline left nothing out.
     """
 
-    def __init__(
-        self,
-        scene: Scene,
-        question: PlacementQuestion,
-        jobs: int,
-        deadline: Deadline,
-        report: Callable[[str], None],
-    ) -> None:
-        """Solve the scene where it has its part."""
-        self.complete = True
-        self._scene, self._question, self._jobs = scene, question, jobs
-        self._deadline, self._report = deadline, report
-        self._known: dict[tuple[str, Pose], PlacedMinimum] = {}
-        start = (0.0,) * 6 if question.base else pose_of(scene.placement)
-        rows = self._minima(scene, _OWN, [start])
-        if not rows:
-            raise OutOfTime
-        self._here = here = rows[0]
-        if question.cover is None and here.segments is None:
-            message = (
-                "say how much has to be covered: where the scene has it, the part cannot stand "
-                f"({here.refused or 'not solved in time'})"
-            )
-            raise InputError(None, "cover", message)
-        self._cover = here.covered_share if question.cover is None else question.cover
-        self._enough = self._cover  # on the coarse mesh
-        self._tried: list[PlacedMinimum] = []
-        self._listed: list[PlacedMinimum] = []
-        self._others: list[PlacedMinimum] = []
-        self._chosen: list[Pose] = []
+    scene: Scene
+    question: PlacementQuestion
+    jobs: int
+    deadline: Deadline
+    report: Callable[[str], None]
+    cover: float = 0.0
+    rows: dict[Pose, PlacedMinimum] = field(default_factory=dict)
+    complete: bool = True
 
-    def try_on_coarse_mesh(self) -> None:
-        """Try placements all over the ranges, then around the best ones."""
-        asked = self._question
-        self._report("a coarse mesh")
-        coarse = coarse_scene(self._scene, asked.vertices, self._deadline)
-        mesh = str(asked.vertices)
-        if asked.cover is None:
-            # The share of a coarse mesh is another one: like is compared with like.
-            for row in self._minima(coarse, mesh, [self._here.pose]):
-                self._enough = row.covered_share
-        here = self._here.pose
-        self._try(coarse, mesh, [here, *spread(asked.ranges, here, asked.points, asked.seed)])
-        for number, share in enumerate(_CLOSER, 1):
-            each = max(asked.points // 20, 1)
-            best = self._best_of(coarse, mesh, self._tried, _AROUND, self._enough)
-            near = [
-                pose
-                for turn, row in enumerate(best)
-                for pose in around(
-                    asked.ranges, row.pose, share, each, asked.seed + 10 * number + turn
-                )
-            ]
-            self._try(coarse, mesh, near)
-        last = self._best_of(coarse, mesh, self._tried, 2 * asked.best, self._enough)
-        self._chosen = [row.pose for row in last]
-
-    def prove(self) -> None:
-        """Build and prove the best ones on the scene's own mesh."""
-        asked = self._question
-        self._report("proving the best ones")
-        rows = self._minima(self._scene, _OWN, self._chosen, self._cover)
-        self._listed = self._best_of(self._scene, _OWN, rows, asked.best, self._cover)
-        self._others = [row for row in rows if row not in self._listed]
-        if asked.leeway is None:
-            return
-        for number, row in enumerate(self._listed):
-            self._report(f"how far placement {number + 1} may be off")
-            self._listed[number] = replace(row, leeway=self._leeway(row, asked.leeway))
-
-    def found(self) -> Placements:
-        """The answer."""
-        return Placements(
-            self._scene.name,
-            self._cover,
-            self._here,
-            tuple(self._listed),
-            (*self._tried, *self._others),
-            self.complete,
-            self._question.base,
-        )
-
-    def _minima(
-        self, scene: Scene, mesh: str, poses: Sequence[Pose], cover: float | None = None
-    ) -> list[PlacedMinimum]:
+    def look(self, poses: Sequence[Pose], *, whole: bool = False) -> list[PlacedMinimum]:
         """A row for each placement, in order; fewer if the deadline comes first.
 
         Args:
-            mesh: the name of this scene's mesh.
-            cover: the share that is enough, for bounds where nothing better is known; the same for
-                all placements of a mesh. None for whole builds.
+            whole: build each; otherwise bounds are enough where nothing better is known.
 
         Raises:
             OutOfTime: the deadline came before the first.
         """
-        self._deadline.check()
-        known = {
-            pose: row
-            for (its, pose), row in self._known.items()
-            if its == mesh and (cover is not None or not row.at_least)
-        }
+        self.deadline.check()
+        known = {pose for pose, row in self.rows.items() if not (whole and row.at_least)}
         new = [pose for pose in dict.fromkeys(poses) if pose not in known]
-        for rows in self._computed(scene, new, cover):
-            known |= {row.pose: row for row in rows}
-            self._known |= {(mesh, row.pose): row for row in rows}
-            self._report(f"{len(self._known)} placements")
-        self.complete &= known.keys() >= set(poses)
-        return [known[pose] for pose in poses if pose in known]
+        order = (*self.rows, *poses)
+        for rows in self._computed(new, None if whole else self.cover):
+            known |= {row.pose for row in rows}
+            self.rows |= {row.pose: row for row in rows}
+            self.report(f"{len(self.rows)} placements")
+        self.rows = {pose: self.rows[pose] for pose in order if pose in self.rows}
+        self.complete &= known >= set(poses)
+        return [self.rows[pose] for pose in poses if pose in known]
 
     def _computed(
-        self, scene: Scene, poses: Sequence[Pose], cover: float | None
+        self, poses: Sequence[Pose], cover: float | None
     ) -> Iterator[list[PlacedMinimum]]:
         """The rows of placements, some at a time, in the order in which they are done."""
-        how = 1, self._question.seed, self._question.base, cover
-        size = min(_BATCH, -(-len(poses) // self._jobs) or 1)
+        how = 1, self.question.seed, self.question.base, cover
+        size = min(_BATCH, -(-len(poses) // self.jobs) or 1)
         lost = [poses[at : at + size] for at in range(0, len(poses), size)]
-        if 1 in (self._jobs, len(poses)):  # this process does what there is one of
+        if 1 in (self.jobs, len(poses)):  # this process does what there is one of
             for part in lost:
-                yield minima_at(scene, part, self._deadline.left, *how)
+                yield minima_at(self.scene, part, self.deadline.left, *how)
             return
         for attempt in range(1, _ATTEMPTS + 1):
-            left = self._deadline.left
+            left = self.deadline.left
             most = min(left, _ALL_DAY) + _ENDING
-            tasks = [(part, Task(minima_at, (scene, part, left, *how), most)) for part in lost]
+            tasks = [(part, Task(minima_at, (self.scene, part, left, *how), most)) for part in lost]
             lost = []
-            for part, ended in as_they_end(self._jobs, tasks):
+            for part, ended in as_they_end(self.jobs, tasks):
                 if ended.end in ("done", "timeout", "stopped"):
                     yield ended.value or []
                 elif ended.end == "failed" or attempt == _ATTEMPTS:
@@ -216,51 +175,23 @@ class _Search:
                 else:  # the process was lost; the work is repeated
                     lost.append(part)
 
-    def _try(self, coarse: Scene, mesh: str, poses: Sequence[Pose]) -> None:
-        self._tried += self._minima(coarse, mesh, poses, self._enough)
+    def best_of(self, poses: Iterable[Pose], count: int) -> list[PlacedMinimum]:
+        """The best of some that were looked at, in the ranges, none next to a better one.
 
-    def _best_of(
-        self, scene: Scene, mesh: str, rows: list[PlacedMinimum], count: int, cover: float
-    ) -> list[PlacedMinimum]:
-        """The best ones in the ranges, none of them next to a better one.
-
-        Of rows with bounds those that look best are built, and put in their places, until none that
-        is left could be among the best.
+        Of those with bounds the ones that look best are built, until none that is left could be
+        among the best.
         """
+        ranges = self.question.ranges
+        allowed = [pose for pose in poses if is_inside(ranges, pose)]  # the start may not be
         while True:
-            chosen = self._look_best(rows, count, cover)
+            chosen: list[PlacedMinimum] = []
+            rows = [self.rows[pose] for pose in allowed]
+            for row in sorted(rows, key=lambda row: row.rank(self.cover)):
+                apart = all(distance(ranges, row.pose, one.pose) >= _NEXT for one in chosen)
+                if (row.segments or row.at_least) and apart and len(chosen) < count:
+                    chosen.append(row)
             open_ = [row.pose for row in chosen if row.at_least]
             if not open_:
                 return chosen
-            built = {row.pose: row for row in self._minima(scene, mesh, open_)}
-            rows[:] = [built.get(row.pose, row) for row in rows]
-            if len(built) < len(open_):
+            if len(self.look(open_, whole=True)) < len(open_):
                 raise OutOfTime
-
-    def _look_best(
-        self, rows: Sequence[PlacedMinimum], count: int, cover: float
-    ) -> list[PlacedMinimum]:
-        ranges = self._question.ranges
-        chosen: list[PlacedMinimum] = []
-        allowed = [row for row in rows if is_inside(ranges, row.pose)]  # the start may not be
-        for row in sorted(allowed, key=lambda row: row.rank(cover)):
-            apart = all(distance(ranges, row.pose, other.pose) >= _NEXT for other in chosen)
-            if (row.segments or row.at_least) and apart and len(chosen) < count:
-                chosen.append(row)
-        return chosen
-
-    def _leeway(self, placed: PlacedMinimum, up_to_m: float) -> Leeway:
-        """How far the part may be off a placement before its lift-offs rise."""
-        vertices = self._scene.covered(NEVER).vertices
-        beside = displaced(vertices, placed.pose, up_to_m, _BESIDE, self._question.seed)
-        holds, least = 0.0, placed.covered_share
-        for first in range(0, _BESIDE, _TOGETHER):
-            some = beside[first : first + _TOGETHER]
-            rows = self._minima(self._scene, _OWN, [pose for _, pose in some])
-            if len(rows) < len(some):
-                raise OutOfTime
-            for number, ((off, _), row) in enumerate(zip(some, rows, strict=True), first + 1):
-                if row.segments is None or row.segments > (placed.segments or 0):
-                    return Leeway(holds, off, number, least)
-                holds, least = off, min(least, row.covered_share)
-        return Leeway(holds, None, _BESIDE, least)

@@ -9,10 +9,10 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
-from cellcolor.data.plan import ContactPath, VertexContacts
+from cellcolor.data.plan import ContactPath
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.inverse import is_tool_on_last_axis, pose_at_zero
+from cellcolor.frontend.arm.inverse import is_tool_on_last_axis
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult
 from cellcolor.memory import chunks
@@ -22,17 +22,21 @@ from cellcolor.trajectory_checker.tolerances import AT_VERTEX, OFF_SURFACE, TILT
 
 @dataclass(frozen=True)
 class Touches:
-    """Where a path touches vertices, and where it does not.
+    """Where a path touches vertices in one of their colors, and where it does not.
 
     Attributes:
-        contacts: those in a color of their vertex.
+        stroke: (c,) the stroke of each contact, in the order of the path.
+        vertex: (c,) the vertex touched.
+        color: (c,) the color there, one of the vertex's.
         in_no_color: of vertices with others the first sample, and why it has no color there.
         nearest: (n,) distance of each vertex from the nearest sample in contact, m; infinite if
             there is none.
         misplaced: samples whose joints put the tip somewhere else than they say, and how far, m.
     """
 
-    contacts: VertexContacts
+    stroke: Index
+    vertex: Index
+    color: Index
     in_no_color: dict[int, tuple[int, str]]
     nearest: Array
     misplaced: dict[int, float]
@@ -162,8 +166,8 @@ def touches(built: BuildResult, path: ContactPath, deadline: Deadline = NEVER) -
     has, in_no_color = color >= 0, dict[int, tuple[int, str]]()
     for row in np.flatnonzero(~has).tolist():
         in_no_color.setdefault(int(vertex[row]), (int(sample[row]), why[row]))
-    contacts = VertexContacts(stroke[sample[has]], vertex[has], color[has])
-    return Touches(contacts, in_no_color, nearest, misplaced)
+    own = stroke[sample[has]], vertex[has], color[has]
+    return Touches(*own, in_no_color, nearest, misplaced)
 
 
 def _check_width(robot: Robot, joints: Array) -> None:
@@ -178,5 +182,5 @@ def _compared(robot: Robot) -> Mask:
     A last one about the tool's axis does not, if the tool's turn is free.
     """
     compared = np.ones(robot.joints, dtype=bool)
-    compared[-1] = robot.task.turn or not is_tool_on_last_axis(pose_at_zero(robot))
+    compared[-1] = robot.task.turn or not is_tool_on_last_axis(robot)
     return compared

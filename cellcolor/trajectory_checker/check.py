@@ -61,23 +61,23 @@ def check_trajectory(
     robot, motion = prepared.robot, prepared.scene.setup.motion
     direction, touches = robot.task.direction, not prepared.setup.task.stand_off_m
     _check_arm(prepared, trajectory)
-    faults = FaultList(trajectory, timed)
     notes: list[str] = []
     report("joints")
     tips, axes = poses_of(robot, trajectory.joints, deadline)
+    faults = FaultList(trajectory, tips, timed)
     joint_limits = _joint_limits(prepared, timed, notes)
-    jumps = judge_joints(trajectory, tips, joint_limits, timed, faults)
+    jumps = judge_joints(joint_limits, faults)
     skip = jumps.copy()
     skip[[sample for sample in trajectory.unplanned if sample < len(skip)]] = True
     dense = densified(trajectory, robot, tips, axes, skip, deadline)
     feeds: tuple[StrokeFeed, ...] = ()
     if timed and motion is not None:
-        judge_tool_speeds(trajectory, dense, skip, motion, touches, faults)
-        feeds = judge_feed(trajectory, dense, joint_limits, motion, faults)
-    judge_poses(trajectory, robot, tips, axes, faults)
-    judge_lift_offs(trajectory, minimum_lift_offs, faults)
+        judge_tool_speeds(dense, skip, motion, touches, faults)
+        feeds = judge_feed(dense, joint_limits, motion, faults)
+    judge_poses(robot, axes, faults)
+    judge_lift_offs(minimum_lift_offs, faults)
     report("validity")
-    judge_validity(prepared, trajectory, dense, deadline, faults)
+    judge_validity(prepared, dense, deadline, faults)
     report("contact")
     fine_edge = _WITHOUT_SPACING if motion is None else _FINE * motion.spacing_m
     fine = refined(prepared.surface, fine_edge, deadline)

@@ -1,4 +1,4 @@
-"""Collecting faults: neighboring samples with the same fault are one."""
+"""A trajectory and its faults so far: neighboring samples with the same fault are one."""
 
 from __future__ import annotations
 
@@ -20,13 +20,14 @@ class FaultList:
 
     Attributes:
         trajectory: which one.
+        tips: (k, 3) where its joints put the tool's tip, m.
+        timed: whether its times mean anything.
         counts: how many of each kind were found.
         faults: the first of each kind.
     """
 
-    def __init__(self, trajectory: Trajectory, timed: bool) -> None:
-        self._times = trajectory.times if timed else None
-        self.trajectory = trajectory
+    def __init__(self, trajectory: Trajectory, tips: Array, timed: bool = True) -> None:
+        self.trajectory, self.tips, self.timed = trajectory, tips, timed
         self.counts: Counter[FaultKind] = Counter()
         self.faults: list[Fault] = []
 
@@ -41,15 +42,23 @@ class FaultList:
         reason: str | None = None,
         place: Array | None = None,
     ) -> None:
-        """Note one fault; ``joint`` is the joint's number, ``place`` (3,) in m."""
+        """Note one fault.
+
+        Args:
+            joint: its number.
+            place: (3,) in m; None for that of the tip at the sample.
+        """
         self.counts[kind] += 1
         if self.counts[kind] > _MOST:
             return
-        at = None if sample is None or self._times is None else float(self._times[sample])
+        time: float | None = None
+        if sample is not None:
+            time = float(self.trajectory.times[sample]) if self.timed else None
+            place = self.tips[sample] if place is None else place
         name = None if joint is None else self.trajectory.joint_names[joint]
         x_y_z = None if place is None else (float(place[0]), float(place[1]), float(place[2]))
         last_sample = sample if last_sample is None else last_sample
-        self.faults.append(Fault(kind, text, sample, last_sample, at, name, reason, x_y_z))
+        self.faults.append(Fault(kind, text, sample, last_sample, time, name, reason, x_y_z))
 
     def add_stretches(
         self,
@@ -57,7 +66,6 @@ class FaultList:
         at_fault: Mask,
         excess: Array,
         text: Callable[[int], str],
-        places: Array,
         joint: int | None = None,
     ) -> None:
         """Note each stretch of neighboring samples at fault once, with the text of its worst one.
@@ -66,11 +74,10 @@ class FaultList:
             at_fault: (k,).
             excess: (k,) how bad each is.
             text: what to say of a sample.
-            places: (k, 3) in m.
         """
         for first, after in stretches(at_fault):
             worst = first + int(np.argmax(excess[first:after]))
-            self.add(kind, text(worst), first, after - 1, joint=joint, place=places[first])
+            self.add(kind, text(worst), first, after - 1, joint=joint)
 
     def add_rows(
         self,
@@ -106,7 +113,6 @@ class FaultList:
         at_fault: Mask,
         excess: Array,
         text: Callable[[int, int], str],
-        places: Array,
     ) -> None:
         """The same for each joint; ``text`` says of a row and a joint what follows its name.
 
@@ -118,4 +124,4 @@ class FaultList:
             def said(row: int, joint: int = joint) -> str:
                 return f"{self.trajectory.joint_names[joint]} {text(row, joint)}"
 
-            self.add_stretches(kind, at_fault[:, joint], excess[:, joint], said, places, joint)
+            self.add_stretches(kind, at_fault[:, joint], excess[:, joint], said, joint)

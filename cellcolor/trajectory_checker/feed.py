@@ -21,11 +21,7 @@ _LEAST_STEP = 1e-9  # m; a tip that stands still comes as far, so that ways asce
 
 
 def judge_feed(
-    trajectory: Trajectory,
-    dense: Dense,
-    limits: JointLimits,
-    motion: Motion,
-    faults: FaultList,
+    dense: Dense, limits: JointLimits, motion: Motion, faults: FaultList
 ) -> tuple[StrokeFeed, ...]:
     """The feed of each stroke; note where it is lower than the setup allows.
 
@@ -33,6 +29,7 @@ def judge_feed(
         dense: the trajectory with configurations in between, along which lengths are measured.
         motion: with the asked feed and the least one.
     """
+    trajectory = faults.trajectory
     steps, passed = _steps(trajectory, dense), np.diff(trajectory.times)
     load = _load(trajectory, limits)
     asked, window = motion.speed_m_per_s, 2 * motion.tool_radius_m
@@ -67,12 +64,7 @@ def judge_feed(
 
 
 def judge_tool_speeds(
-    trajectory: Trajectory,
-    dense: Dense,
-    skip: Mask,
-    motion: Motion,
-    touches: bool,
-    faults: FaultList,
+    dense: Dense, skip: Mask, motion: Motion, touches: bool, faults: FaultList
 ) -> None:
     """Note where the tip is faster than the setup allows, in contact and between strokes.
 
@@ -80,10 +72,10 @@ def judge_tool_speeds(
         skip: (k - 1,) steps that are known to be no motion.
         touches: whether the tool touches the surface, or stands off it.
     """
-    passed, contact = np.diff(trajectory.times), trajectory.contact
+    trajectory, contact = faults.trajectory, faults.trajectory.contact
+    passed = np.diff(trajectory.times)
     passed = np.where((passed > 0) & ~skip, passed, np.inf)
-    tips = dense.tips[dense.way == 0]
-    straight = np.linalg.norm(np.diff(tips, axis=0), axis=1)
+    straight = np.linalg.norm(np.diff(faults.tips, axis=0), axis=1)
     together, touching = contact[1:] & contact[:-1], contact[1:] != contact[:-1]
 
     def judge(most: float | None, asked: Mask, way: Array, doing: str) -> None:
@@ -96,7 +88,6 @@ def judge_tool_speeds(
             over,
             speed,
             lambda k: f"the tool moves at {speed[k]:.4g} m/s {doing}, allowed: {most:.4g}",
-            tips,
         )
 
     judge(motion.speed_m_per_s, together, straight, "in contact")

@@ -9,7 +9,6 @@ from operator import le
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask, stretches
-from cellcolor.data.trajectory import Trajectory
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import (
     ANGLE_ROUNDING,
@@ -53,24 +52,20 @@ class JointLimits:
         )
 
 
-def judge_joints(
-    trajectory: Trajectory, tips: Array, limits: JointLimits, timed: bool, faults: FaultList
-) -> Mask:
+def judge_joints(limits: JointLimits, faults: FaultList) -> Mask:
     """Note what is wrong with times and joints.
 
     Between two samples each joint moves in proportion to time, so its velocity is its step per
     time. Accelerations are those of a smooth motion through the samples.
 
-    Args:
-        tips: (k, 3) where the tool's tip is, m.
-
     Returns:
         (k - 1,) which steps are jumps.
     """
+    trajectory = faults.trajectory
     steps = np.diff(trajectory.joints, axis=0)
-    _judge_limits(trajectory, tips, limits, faults)
+    _judge_limits(limits, faults)
     together = trajectory.contact[1:] & trajectory.contact[:-1]
-    passed = np.diff(trajectory.times) if timed else np.full(len(steps), np.inf)
+    passed = np.diff(trajectory.times) if faults.timed else np.full(len(steps), np.inf)
     ascending = passed > 0
     faults.add_stretches(
         "time",
@@ -81,7 +76,6 @@ def judge_joints(
             if passed[k - 1]
             else "at the time of the sample before it"
         ),
-        tips,
     )
     safe = np.where(ascending, passed, np.inf)[:, None]
     velocity = steps / safe
@@ -92,22 +86,20 @@ def judge_joints(
     for sample, joint in np.argwhere(jumps).tolist():
         by = f"{steps[sample, joint]:.4g} {limits.units[joint]}"
         text = f"{trajectory.joint_names[joint]} moves by {by} to the next sample"
-        faults.add("jump", text, sample, sample + 1, joint=joint, place=tips[sample])
+        faults.add("jump", text, sample, sample + 1, joint=joint)
     fast &= ~jumps & ascending[:, None]
     speed = np.abs(velocity)
     said = limits.text("moves at", speed, "s", limits.velocity)
-    faults.add_joint_stretches("velocity", fast, speed, said, tips)
+    faults.add_joint_stretches("velocity", fast, speed, said)
     known = ascending & ~jumps.any(axis=1)
-    if timed:
-        _judge_accelerations(trajectory, known, tips, limits, faults)
-        _judge_jerks(trajectory, known, tips, limits, faults)
+    if faults.timed:
+        _judge_accelerations(known, limits, faults)
+        _judge_jerks(known, limits, faults)
     return np.asarray(jumps.any(axis=1))
 
 
-def _judge_limits(
-    trajectory: Trajectory, tips: Array, limits: JointLimits, faults: FaultList
-) -> None:
-    lower, upper, joints = limits.lower, limits.upper, trajectory.joints
+def _judge_limits(limits: JointLimits, faults: FaultList) -> None:
+    lower, upper, joints = limits.lower, limits.upper, faults.trajectory.joints
     over = np.maximum(joints - upper, lower - joints)
 
     def beyond(k: int, joint: int) -> str:
@@ -123,13 +115,10 @@ def _judge_limits(
             f"is at {joints[k, joint]:.5f} {limits.units[joint]}, {beyond(k, joint)} beyond "
             f"its limits of {lower[joint]:.5f} and {upper[joint]:.5f}"
         ),
-        tips,
     )
 
 
-def _judge_accelerations(
-    trajectory: Trajectory, known: Mask, tips: Array, limits: JointLimits, faults: FaultList
-) -> None:
+def _judge_accelerations(known: Mask, limits: JointLimits, faults: FaultList) -> None:
     """Note samples where no smooth motion through the samples keeps the accelerations.
 
     Whatever moves on a straight line from sample to sample says no more than the ends of that line
@@ -149,7 +138,7 @@ def _judge_accelerations(
     Args:
         known: (k - 1,) steps that are motions.
     """
-    times, joints, most = trajectory.times, trajectory.joints, limits.acceleration
+    times, joints, most = faults.trajectory.times, faults.trajectory.joints, limits.acceleration
     if most is None or len(known) < 2:
         return
     # In which a velocity can change beside a line, and from one end of it to the other.
@@ -185,12 +174,10 @@ def _judge_accelerations(
         at_fault, excess = np.zeros(joints.shape, dtype=bool), np.zeros(joints.shape)
         at_fault[rows[1:-1]], excess[rows[1:-1]] = over, found
         text = limits.text("accelerates by", excess, "s²", most)
-        faults.add_joint_stretches("acceleration", at_fault, excess, text, tips)
+        faults.add_joint_stretches("acceleration", at_fault, excess, text)
 
 
-def _judge_jerks(
-    trajectory: Trajectory, known: Mask, tips: Array, limits: JointLimits, faults: FaultList
-) -> None:
+def _judge_jerks(known: Mask, limits: JointLimits, faults: FaultList) -> None:
     """Note samples where no smooth motion through the samples keeps the jerks.
 
     Six times the third divided difference of four samples is a mean of the jerks between the first
@@ -201,11 +188,13 @@ def _judge_jerks(
     Args:
         known: (k - 1,) steps that are motions.
     """
-    most = limits.jerk
+    trajectory, most = faults.trajectory, limits.jerk
     if most is None:
         return
-    at_fault = np.zeros(trajectory.joints.shape, dtype=bool)
-    excess = np.zeros(trajectory.joints.shape)
+    at_fault, excess = (
+        np.zeros(trajectory.joints.shape, dtype=bool),
+        np.zeros_like(trajectory.joints),
+    )
     rest = CYCLE * np.arange(1, 4)
     for first, after in stretches(known):
         before, behind = 3 * (first == 0), 3 * (after == len(known))  # times at rest
@@ -221,7 +210,7 @@ def _judge_jerks(
         np.logical_or.at(at_fault, at, over)
         np.maximum.at(excess, at, jerk)
     text = limits.text("jerks by", excess, "s³", most)
-    faults.add_joint_stretches("jerk", at_fault, excess, text, tips)
+    faults.add_joint_stretches("jerk", at_fault, excess, text)
 
 
 def _jerks(times: Array, joints: Array) -> tuple[Array, Array, Index]:

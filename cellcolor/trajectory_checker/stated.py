@@ -18,17 +18,16 @@ from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import POSE_ANGLE, POSE_DISTANCE
 
 
-def judge_poses(
-    trajectory: Trajectory, robot: Robot, tips: Array, axes: Array, faults: FaultList
-) -> None:
+def judge_poses(robot: Robot, axes: Array, faults: FaultList) -> None:
     """Note samples whose stated point or normal is another one.
 
     Joints only give the normal where the task holds the tool against it.
 
     Args:
-        tips, axes: (k, 3) what forward kinematics gives, m and unit vectors.
+        axes: (k, 3) of the tool, unit vectors, as forward kinematics gives them.
     """
-    apart = np.linalg.norm(trajectory.points - tips, axis=1)
+    trajectory = faults.trajectory
+    apart = np.linalg.norm(trajectory.points - faults.tips, axis=1)
     turned = np.zeros(len(axes))
     if robot.task.direction:
         lengths = np.linalg.norm(trajectory.normals, axis=1)
@@ -42,16 +41,16 @@ def judge_poses(
             f"the joints put the tip {1000 * apart[k]:.4g} mm off the trajectory's own point, the "
             f"tool's axis {np.degrees(turned[k]):.4g} degrees off its own normal"
         ),
-        tips,
     )
 
 
-def judge_lift_offs(trajectory: Trajectory, minimum: int | None, faults: FaultList) -> None:
+def judge_lift_offs(minimum: int | None, faults: FaultList) -> None:
     """Note lift-offs that are stated but not there, and a number that the proof contradicts.
 
     The proof is for the whole surface. Where a segment is stated to be left out and is never
     touched, one fewer does not contradict it: with that segment the division would be whole again.
     """
+    trajectory = faults.trajectory
     ends = {after - 1 for _, after in trajectory.strokes[:-1]}
     stated = {extra.sample for extra in trajectory.extra_lift_offs}
     for extra in trajectory.extra_lift_offs:
@@ -87,31 +86,33 @@ def completed(table: TrajectoryTable, robot: Robot, deadline: Deadline = NEVER) 
     Raises:
         InputError: it has another number of joints.
     """
-    joints, count = table.joints, len(table.joints)
+    joints, poses, columns = table.joints, table.poses, table.columns
+    contact = table.marked("contact")
     if joints.shape[1] != robot.joints:
         message = f"there are {joints.shape[1]} joints, the arm has {robot.joints}"
         raise InputError(None, "line 1", message)
-    if table.poses is None:
+    if poses is None:
         points, axes = poses_of(robot, joints, deadline)
         normals = -axes
     else:
-        points, normals = table.poses[:, :3], table.poses[:, 3:]
-    segment = strokes_of(table.contact) if table.segment is None else table.segment
+        points, normals = poses[:, :3], poses[:, 3:]
+    segment = columns.get("segment", strokes_of(contact)).astype(np.int64)
     return Trajectory(
         name=table.name,
         joint_names=robot.joint_names,
-        times=np.arange(count, dtype=np.float64) if table.times is None else table.times,
+        times=columns.get("time_s", np.arange(len(joints), dtype=np.float64)),
         joints=joints,
         points=points,
         normals=normals,
-        contact=table.contact,
+        contact=contact,
         segment=segment,
-        unplanned=tuple(np.flatnonzero(table.unplanned).tolist()),
+        unplanned=tuple(np.flatnonzero(table.marked("unplanned")).tolist()),
         extra_lift_offs=tuple(
             ExtraLiftOff(k, int(segment[k]), _REASON, _REASON, tuple(points[k].tolist()))
-            for k in np.flatnonzero(table.extra_lift_off).tolist()
+            for k in np.flatnonzero(table.marked("extra_lift_off")).tolist()
         ),
         repeated=tuple(
-            RepeatedStretch(first, after - 1, _REASON) for first, after in stretches(table.repeated)
+            RepeatedStretch(first, after - 1, _REASON)
+            for first, after in stretches(table.marked("repeated"))
         ),
     )

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
-from cellcolor.data.trajectory import Trajectory
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.body import Body, Shape
 from cellcolor.frontend.arm.kinematics import Poses, forward
@@ -203,23 +202,17 @@ _THIN = 1e-4  # m; radius of the axis of the tool's tip, which must not pass thr
 
 
 def judge_validity(
-    prepared: PreparedScene,
-    trajectory: Trajectory,
-    dense: Dense,
-    deadline: Deadline,
-    faults: FaultList,
+    prepared: PreparedScene, dense: Dense, deadline: Deadline, faults: FaultList
 ) -> None:
     """Note configurations that fail a test, and moves that were not planned.
 
     In contact all tests of the scene are asked. On the way between strokes only contacts are, of
     the arm and of the tool's tip; there the tip may not pass through the object either.
     """
-    unplanned = np.zeros(len(trajectory.times), dtype=bool)
-    unplanned[list(trajectory.unplanned)] = True
-    at_samples = dense.tips[dense.way == 0]
-    for sample in trajectory.unplanned:
-        text = "the move to the next sample was not planned"
-        faults.add("unplanned", text, sample, place=at_samples[sample])
+    unplanned = np.zeros(len(faults.tips), dtype=bool)
+    for sample in faults.trajectory.unplanned:
+        unplanned[sample] = True
+        faults.add("unplanned", "the move to the next sample was not planned", sample)
     contact = np.flatnonzero(dense.contact)
     names = prepared.judge.reason_names
     reasons = _reasons(prepared, dense.joints[contact], deadline)

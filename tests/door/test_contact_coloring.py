@@ -12,7 +12,7 @@ from meshes import drawn, surfaces
 
 import cellcolor
 from cellcolor.checker.vertex_plan import check_plan
-from cellcolor.data.plan import VertexContacts
+from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.door.joint_plans import coloring_of
 from cellcolor.oracle import ProvenRange
@@ -23,9 +23,8 @@ Rows = list[tuple[int, int, int]]
 """Stroke, vertex and color of each contact."""
 
 
-def contacts(rows: Rows) -> VertexContacts:
-    table = np.array(rows, dtype=np.int64).reshape(-1, 3)
-    return VertexContacts(*table.T)
+def colored(surface: LabelledSurface, rows: Rows) -> tuple[Plan, int, int]:
+    return coloring_of(surface, *np.array(rows, dtype=np.int64).reshape(-1, 3).T)
 
 
 def continuous(surface: LabelledSurface, color: int) -> networkx.Graph:
@@ -52,16 +51,16 @@ def test_no_fewer_runs_than_segments(surface: LabelledSurface, data: st.DataObje
     lifted = data.draw(st.lists(st.booleans(), min_size=len(order), max_size=len(order)))
     strokes = np.cumsum(lifted).tolist()
     rows = [(s, v, color) for s, (v, color) in zip(strokes, order, strict=True)]
-    found = coloring_of(surface, contacts(rows))
+    plan, found_changes, runs = colored(surface, rows)
     firsts: dict[int, int] = {}
     for _, vertex, color in rows:
         firsts.setdefault(vertex, color)
-    colors = found.plan.vertex_colors
+    colors = plan.vertex_colors
     assert {v: color for v, color in enumerate(colors) if color is not None} == firsts
-    report = check_plan(surface, found.plan)
-    assert report.segments is not None and report.segments <= found.runs
+    report = check_plan(surface, plan)
+    assert report.segments is not None and report.segments <= runs
     changes = [one[0] == other[0] and one[2] != other[2] for one, other in pairwise(rows)]
-    assert found.color_changes == sum(changes)
+    assert found_changes == sum(changes)
 
 
 @examples(40)
@@ -87,9 +86,9 @@ def test_a_path_that_follows_the_mesh(surface: LabelledSurface, data: st.DataObj
             rows += [(stroke, v, color) for v in way[1:]]
         left -= set(walk)
         stroke += 1
-    found = coloring_of(surface, contacts(rows))
-    assert (found.runs, found.color_changes) == (stroke, 0)
-    verdict = cellcolor.judge(surface, found.plan)
+    plan, changes, runs = colored(surface, rows)
+    assert (runs, changes) == (stroke, 0)
+    verdict = cellcolor.judge(surface, plan)
     assert verdict.segments is not None and verdict.bounds is not None
     assert verdict.bounds.lower <= verdict.segments <= stroke
 
@@ -98,9 +97,9 @@ def test_strokes_that_cross_can_be_fewer_than_segments() -> None:
     """A red stroke from left to right and a blue one from top to bottom over one vertex of both."""
     cross = drawn(".B. RMR .B.", {"R": [RED], "B": [BLUE], "M": [RED, BLUE], ".": []})
     over = [(0, 3, RED), (0, 4, RED), (0, 5, RED), (1, 1, BLUE), (1, 4, BLUE), (1, 7, BLUE)]
-    found = coloring_of(cross, contacts(over))
-    assert (found.plan.vertex_colors[4], found.runs) == (RED, 3)
-    assert check_plan(cross, found.plan).segments == 3
+    plan, _, runs = colored(cross, over)
+    assert (plan.vertex_colors[4], runs) == (RED, 3)
+    assert check_plan(cross, plan).segments == 3
     assert cellcolor.proven_range(cross) == ProvenRange(3, 3)
 
 
@@ -117,6 +116,5 @@ def test_where_a_run_ends() -> None:
         ([(0, 1, RED), (1, 0, BLUE), (1, 1, BLUE), (1, 4, BLUE)], 2, 0),
     ]
     for rows, runs, changes in cases:
-        found = coloring_of(row, contacts(rows))
-        assert (found.runs, found.color_changes) == (runs, changes), rows
-    assert coloring_of(row, contacts([])).plan.vertex_colors == (None,) * 8
+        assert colored(row, rows)[1:] == (changes, runs), rows
+    assert colored(row, [])[0].vertex_colors == (None,) * 8

@@ -20,10 +20,9 @@ from stand_in import stand_in
 from waves import arm, driven, on
 
 from cellcolor.errors import InputError
-from cellcolor.exports.interface import PlannedMotion
+from cellcolor.exports.interface import PlannedMotion, stretches
 from cellcolor.exports.programs import ASIDE, BESIDE, PRESSED, WITHIN
 from cellcolor.exports.registry import exported, why_no_program
-from cellcolor.exports.samples import stretches
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.setup import Controller, Setup

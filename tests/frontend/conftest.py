@@ -39,7 +39,7 @@ def setup() -> Setup:
 
 
 @pytest.fixture
-def scene() -> Varied:
+def scene(tmp_path: Path) -> Varied:
     """``scene(setup={...}, arm=function, radius_m=.3, ...)`` makes a variant of the wok.
 
     ``setup`` changes keys of the setup, ``arm`` rewrites the arm's URDF text, and the other names
@@ -54,7 +54,9 @@ def scene() -> Varied:
         wok = Scene.read(WOK)
         changed = with_keys(wok.setup, **(setup or {}))
         if arm is not None:
-            changed = changed.varied(robot={"arm_urdf": arm((ROBOTS / "ur5.urdf").read_text())})
+            file = tmp_path / "arm.urdf"  # Pinocchio reads it as well
+            file.write_text(arm((ROBOTS / "ur5.urdf").read_text()))
+            changed = changed.varied(robot={"arm_urdf": str(file)})
         return with_keys(wok.with_setup(changed), **keys)
 
     return vary

@@ -270,4 +270,4 @@ def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[s
         assert run("explain", *wrong) == 2
         assert said in capsys.readouterr().err
     assert run("explain", file, "--time-limit", "0.01") == 3
-    assert "before the scene itself was solved" in capsys.readouterr().err
+    assert "the time limit came first" in capsys.readouterr().err

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,6 @@ from shipped import SCENES, shipped
 import cellcolor
 from cellcolor.deadline import NEVER
 from cellcolor.frontend import Scene
-from cellcolor.frontend.parts.placement import Placement
 from cellcolor.questions.placements import (
     PlacedMinimum,
     Placements,
@@ -25,7 +23,6 @@ from cellcolor.questions.placements import (
 )
 from cellcolor.questions.placing import (
     coarse_scene,
-    displaced,
     minima_at,
     spread,
 )
@@ -160,29 +157,6 @@ def test_where_the_scene_has_it_in_the_base_the_share_has_to_be_said() -> None:
     assert found.here.refused and found.best[0].covered_share >= 0.2
 
 
-def test_how_far_a_placement_may_be_off(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Against the samples, each built and solved again, nearest first."""
-    monkeypatch.setattr("cellcolor.questions.searching_places._BESIDE", 6)
-    monkeypatch.setattr("cellcolor.questions.searching_places._TOGETHER", 4)
-    found = place(points=2, best=1, leeway=0.2, cover=0.5)
-    (row,) = found.best
-    assert row.leeway is not None and asdict(row.leeway) == row.to_document()["leeway"]
-    own = shipped("wok_obstacle", 80)
-    holds, shares = 0.0, [row.covered_share]
-    beside_it = displaced(own.covered().vertices, row.pose, 0.2, 6, 0)
-    for number, (off, pose) in enumerate(beside_it, 1):
-        (beside,) = minima_at(own, [pose], np.inf, 1, 0)
-        if beside.segments is None or row.segments is None or beside.segments > row.segments:
-            assert (row.leeway.fails_m, row.leeway.tried) == (off, number)
-            break
-        holds = off
-        shares.append(beside.covered_share)
-    else:
-        assert row.leeway.fails_m is None and row.leeway.tried == 6
-    assert row.leeway.holds_m == holds and row.leeway.least_share == min(shares)
-    assert str(row.leeway) in str(found)
-
-
 def test_why_the_part_cannot_stand_somewhere_is_said() -> None:
     """Counted by hand: two in the ground, one in an obstacle."""
     stands = PlacedMinimum((0.4, 0, 0, 0, 0, 0), 2, 0.9, True, 80)
@@ -196,23 +170,6 @@ def test_why_the_part_cannot_stand_somewhere_is_said() -> None:
         "  in 3 of them the part cannot stand: it would stand in the ground (2); "
         "it would stand in obstacle 1 (1)"
     )
-
-
-@examples(50)
-@given(
-    pose=st.tuples(*6 * [st.floats(-1, 1)]), up_to=st.floats(1e-4, 0.05), count=st.integers(1, 20)
-)
-def test_displacements_are_as_far_as_they_say(pose: Pose, up_to: float, count: int) -> None:
-    """Where the vertices stand is asked of the placement that a scene would have."""
-    vertices = np.array([[0.0, 0, 0], [0.3, 0, 0], [0, 0.1, 0], [0.1, 0.1, 0.2]])
-    start = Placement(position_m=pose[:3], rpy_rad=pose[3:]).placed(vertices)
-    found = displaced(vertices, pose, up_to, count, 0)
-    assert len(found) == count
-    for number, (said, moved) in enumerate(found, 1):
-        there = Placement(position_m=moved[:3], rpy_rad=moved[3:]).placed(vertices)
-        off = np.linalg.norm(there - start, axis=1).max()
-        assert off == pytest.approx(said, abs=1e-9)
-        assert off == pytest.approx(up_to * number / count, rel=1e-3)
 
 
 @examples(50)
@@ -243,7 +200,6 @@ def test_the_rank_is_what_is_asked_for(rows: list[tuple[int | None, float]], cov
         ({"jobs": 0}, "jobs"),
         ({"x": 0.5}, "x"),
         ({"x": ("a", "b")}, "x"),
-        ({"leeway": -1.0}, "leeway"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(changes: dict[str, Any], field: str | None) -> None:

@@ -103,9 +103,5 @@ def test_the_command_moves_the_base(
     assert run("place", wok, "--base", "--x", "0,0.1", *asked, "--json") == 0
     rows = json_lines(capsys.readouterr().out)
     assert all(row["moved"] == "base" for row in rows) and rows[0]["position_m"] == [0, 0, 0]
-    for wrong, said in (
-        (("place", wok, "--base", "--roll", "0,1"), "roll: the arm's base stays upright"),
-        (("place", wok, "--base", "--x", "0,1", "--leeway", "0.01"), "leeway"),
-    ):
-        assert run(*wrong) == 2
-        assert said in capsys.readouterr().err
+    assert run("place", wok, "--base", "--roll", "0,1") == 2
+    assert "roll: the arm's base stays upright" in capsys.readouterr().err

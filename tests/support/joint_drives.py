@@ -35,6 +35,6 @@ def faults_of(
     everywhere = np.full(count, np.inf)
     slides = np.zeros(count, bool)
     limits = JointLimits(-everywhere, everywhere, fastest, most, change, slides)
-    found = FaultList(drive, timed=True)
-    judge_joints(drive, np.asarray(drive.points), limits, True, found)
+    found = FaultList(drive, np.asarray(drive.points))
+    judge_joints(limits, found)
     return set(found.counts)

@@ -119,9 +119,9 @@ def test_a_path_touches_what_its_samples_are_at() -> None:
     points[9] += [0.0, 0.0, 0.0009]
     found = touches(built, ContactPath(joints, points, contact))
     kept = [k for k in range(12) if k not in (3, 6)]
-    assert found.contacts.vertex.tolist() == [some[k] for k in kept]
-    assert found.contacts.color.tolist() == [colors[k] for k in kept]
-    assert found.contacts.stroke.tolist() == [0] * 5 + [1] * 5
+    assert found.vertex.tolist() == [some[k] for k in kept]
+    assert found.color.tolist() == [colors[k] for k in kept]
+    assert found.stroke.tolist() == [0] * 5 + [1] * 5
     assert found.misplaced == pytest.approx({8: 0.0011})
     tips = np.array([joint_paths.pose(built, row)[0] for row in joints[contact]])
     distances = np.linalg.norm(surface.vertices[:, None] - tips, axis=2).min(axis=1)

@@ -86,8 +86,8 @@ def judged(
     motion = Motion(
         tool_radius_m=RADIUS, speed_m_per_s=ASKED, joint_accelerations_rad_per_s2=(1.0,), **keys
     )
-    faults = FaultList(drive, timed=True)
-    (feed,) = judge_feed(drive, dense, limits, motion, faults)
+    faults = FaultList(drive, dense.tips)
+    (feed,) = judge_feed(dense, limits, motion, faults)
     return feed, set(faults.counts)
 
 
@@ -140,6 +140,6 @@ def test_the_tip_keeps_to_its_speed_between_strokes(most: float | None, kinds: s
     way = np.arange(count + 1) % count / count
     dense = Dense(sample, way, turn[:, None], tips, tips, away, np.full(count + 1, -1))
     motion = Motion(joint_accelerations_rad_per_s2=(1.0,), transfer_speed_m_per_s=most)
-    faults = FaultList(plain, timed=True)
-    judge_tool_speeds(plain, dense, np.zeros(1, dtype=bool), motion, True, faults)
+    faults = FaultList(plain, tips[[0, -1]])
+    judge_tool_speeds(dense, np.zeros(1, dtype=bool), motion, True, faults)
     assert set(faults.counts) == kinds

@@ -138,6 +138,6 @@ def test_a_whole_segment_left_out_allows_one_fewer(segments: tuple[int, ...], fa
     assert drive.lift_offs == 1
     assert 0 in drive.segment[drive.contact] and 7 not in drive.segment
     left_out = tuple(LeftOut(number, 1e-5, "ground", (0.0, 0.0, 0.0)) for number in segments)
-    found = FaultList(drive, timed=True)
-    judge_lift_offs(replace(drive, left_out=left_out, extra_lift_offs=()), 2, found)
+    found = FaultList(replace(drive, left_out=left_out, extra_lift_offs=()), drive.points)
+    judge_lift_offs(2, found)
     assert found.counts["lift-offs"] == faults

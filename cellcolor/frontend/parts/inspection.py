@@ -51,14 +51,14 @@ class Component:
     closed: bool
 
 
-def _fault(row: str, one: str, what: str = "") -> Any:
-    """A field with the places of a fault, or with how many there are, and what a reader is told.
+def _told(row: str, one: str, what: str = "") -> dict[str, str]:
+    """What a reader is told of a fault, beside the field with its places or their number.
 
     Args:
         row: that it is told in.
         one: thing that has the fault, and ``what`` is wrong with it.
     """
-    return field(metadata={"row": row, "one": one, "what": what})
+    return {"row": row, "one": one, "what": what}
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,16 +94,22 @@ class Inspection:
     high_m: Place
     area_m2: float
     components: tuple[Component, ...]
-    holes: tuple[Hole, ...] = _fault("holes", "border")
-    non_manifold_edges: tuple[Place, ...] = _fault("non-manifold", "edge", " of 3 faces or more")
-    non_manifold_vertices: tuple[Place, ...] = _fault("non-manifold", "vertex", " not manifold")
-    merged_vertices: int = _fault("twins", "vertex", " in the same place as another")
-    unused_vertices: int = _fault("unused", "vertex", " without a face")
-    duplicate_faces: int = _fault("duplicates", "face", " there twice")
-    flat_faces: int = _fault("flat", "face", " without area")
-    mixed_winding: int = _fault("winding", "face", " against those around")
-    inside_out: int = _fault("inside out", "closed component", " with a negative volume")
-    crossings: tuple[Place, ...] = _fault("crossings", "pair")
+    holes: tuple[Hole, ...] = field(metadata=_told("holes", "border"))
+    non_manifold_edges: tuple[Place, ...] = field(
+        metadata=_told("non-manifold", "edge", " of 3 faces or more")
+    )
+    non_manifold_vertices: tuple[Place, ...] = field(
+        metadata=_told("non-manifold", "vertex", " not manifold")
+    )
+    merged_vertices: int = field(metadata=_told("twins", "vertex", " in the same place as another"))
+    unused_vertices: int = field(metadata=_told("unused", "vertex", " without a face"))
+    duplicate_faces: int = field(metadata=_told("duplicates", "face", " there twice"))
+    flat_faces: int = field(metadata=_told("flat", "face", " without area"))
+    mixed_winding: int = field(metadata=_told("winding", "face", " against those around"))
+    inside_out: int = field(
+        metadata=_told("inside out", "closed component", " with a negative volume")
+    )
+    crossings: tuple[Place, ...] = field(metadata=_told("crossings", "pair"))
     edge_lengths_m: tuple[float, ...]
     refusal: str | None
     repairs: tuple[str, ...]

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import importlib.metadata
-from collections.abc import Collection, Sequence
-from dataclasses import replace
+from collections.abc import Collection
 from math import ceil, isfinite
 
 from ortools.sat.python import cp_model
@@ -13,7 +12,6 @@ from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
-from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.dart_graph import complete_graph, enough_crossings
 from cellcolor.solvers.cpsat.formulation import SectorModel
@@ -109,55 +107,3 @@ class CompleteModelSolver:
                 bounds.append(Bound("crossings", bound, "surface"))
             bounds.append(Bound("model", bound, "strands"))
         return Answer(division, seams, tuple(bounds), (), built.size)
-
-
-def least_left_out(
-    instance: Instance, weights: Sequence[int], segments: int, options: Options
-) -> tuple[frozenset[int], int] | None:
-    """The cells left out when a number of segments covers the most, in the search space ``paper``.
-
-    A cell that a segment enters can be covered whole without another segment: uncovered pieces of
-    it go, one by one, to a segment beside them in the same cell. So only whole cells are left out.
-    In the model such a cell has a color of its own, which is joinable nowhere, and its root is not
-    counted.
-
-    Args:
-        weights: of each cell, 0 or more.
-        segments: the most that there may be.
-        options: deadline, workers and seed.
-
-    Returns:
-        The cells left out of the best division found, and the weight that no division covers more
-        of. None if nothing was found in time, or the model is too large.
-    """
-    nothing = len(instance.colors)
-    try:
-        built = CompleteModel(_with_color(instance), deadline=options.deadline)
-    except TooLarge:
-        return None
-    model, roots = built.model, built.variables.root
-    left_out = {
-        built.sectors.cell[sector]: literal
-        for (sector, color), literal in roots.items()
-        if color == nothing
-    }
-    model.add(built.segments - sum(left_out.values()) <= segments)
-    model.minimize(sum(weights[cell] * literal for cell, literal in left_out.items()))
-    runner = Runner(options)
-    solver = runner.portfolio()
-    status = runner.solve(solver, model)
-    if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-        return None
-    found = [cell for cell, literal in left_out.items() if solver.boolean_value(literal)]
-    return frozenset(found), sum(weights) - ceil(solver.best_objective_bound - 1e-6)
-
-
-def _with_color(instance: Instance) -> Instance:
-    """The instance with one more color, which all cells have, and no edge joins."""
-    nothing = len(instance.colors)
-    return replace(
-        instance,
-        colors=(*instance.colors, "-".join(("nothing", *instance.colors))),  # no other name
-        cells=tuple(replace(cell, colors=(*cell.colors, nothing)) for cell in instance.cells),
-        edges=tuple(replace(e, colors=instance.joinable(e.id)) for e in instance.edges),
-    )

@@ -40,7 +40,7 @@ from cellcolor.solvers.cpsat.segment_plans import Planner, Undecided
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.interruptible import Runner
 
-FEW_STRANDS, SOME_STRANDS = 2, 4
+SEARCH_STRANDS, FIRST_STRANDS = 2, 4
 """The most strands of a seam in local search, and in the model that comes before the complete one:
 more would make of a cell with many loops a list of many darts."""
 
@@ -98,7 +98,7 @@ class Part:
         self._strands = {
             edge: int(min(options.strands, enough)) for edge, enough in self._enough.items()
         }
-        self._narrow = narrow_graph(instance, FEW_STRANDS)
+        self._narrow = narrow_graph(instance, SEARCH_STRANDS)
         self.regions = color_regions(instance)
         self.bound = self.surface_bound = len(greedy_independent_set(self.regions))
         self.bound_kind = "strangers"
@@ -316,13 +316,13 @@ class Part:
         """Whether models are built on the complete graph: at once, or after a narrow one."""
         seams = strands_of_seams(self.instance, self._strands)
         once = max(self._strands.values(), default=1) == 1
-        return (True,) if once and max(seams, default=0) <= SOME_STRANDS else (False, True)
+        return (True,) if once and max(seams, default=0) <= FIRST_STRANDS else (False, True)
 
     def _graph(self, *, complete: bool) -> DartGraph:
         """The part's darts with all strands ever needed, or with few."""
         if complete:
             return complete_graph(self.instance, self._strands)
-        return narrow_graph(self.instance, SOME_STRANDS)
+        return narrow_graph(self.instance, FIRST_STRANDS)
 
     def _covered(self, regions: Sequence[Region]) -> tuple[DartGraph, Painting]:
         """Every cell painted whole in the color of the last region that has it."""

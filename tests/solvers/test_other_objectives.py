@@ -18,7 +18,7 @@ from cellcolor.decomposition import decompose
 from cellcolor.lab.families import SMALL
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options
-from cellcolor.solvers.preferring import cost_of, preferred
+from cellcolor.solvers.other_objectives import cost_of, preferred
 from examples import examples
 
 MOST_SCHEMES = 3000

@@ -1,10 +1,16 @@
-"""The division that costs least among those with as few segments (docs/formulation.md)."""
+"""Other objectives of the complete model (docs/formulation.md).
+
+They are the division that costs least among those with as few segments, and the most that a number
+of segments covers.
+"""
 
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
+from math import ceil
 
 import numpy as np
 from ortools.sat.python import cp_model
@@ -141,3 +147,55 @@ def _cost(built: CompleteModel, costs: Array) -> cp_model.LinearExprT:
             terms.append(int(grains[cell, one] - grains[cell, cheaper]) * reached)
             costlier = reached
     return sum(terms)
+
+
+def least_left_out(
+    instance: Instance, weights: Sequence[int], segments: int, options: Options
+) -> tuple[frozenset[int], int] | None:
+    """The cells left out when a number of segments covers the most, in the search space ``paper``.
+
+    A cell that a segment enters can be covered whole without another segment: uncovered pieces of
+    it go, one by one, to a segment beside them in the same cell. So only whole cells are left out.
+    In the model such a cell has a color of its own, which is joinable nowhere, and its root is not
+    counted.
+
+    Args:
+        weights: of each cell, 0 or more.
+        segments: the most that there may be.
+        options: deadline, workers and seed.
+
+    Returns:
+        The cells left out of the best division found, and the weight that no division covers more
+        of. None if nothing was found in time, or the model is too large.
+    """
+    nothing = len(instance.colors)
+    try:
+        built = CompleteModel(_with_color(instance), deadline=options.deadline)
+    except TooLarge:
+        return None
+    model, roots = built.model, built.variables.root
+    left_out = {
+        built.sectors.cell[sector]: literal
+        for (sector, color), literal in roots.items()
+        if color == nothing
+    }
+    model.add(built.segments - sum(left_out.values()) <= segments)
+    model.minimize(sum(weights[cell] * literal for cell, literal in left_out.items()))
+    runner = Runner(options)
+    solver = runner.portfolio()
+    status = runner.solve(solver, model)
+    if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+        return None
+    found = [cell for cell, literal in left_out.items() if solver.boolean_value(literal)]
+    return frozenset(found), sum(weights) - ceil(solver.best_objective_bound - 1e-6)
+
+
+def _with_color(instance: Instance) -> Instance:
+    """The instance with one more color, which all cells have, and no edge joins."""
+    nothing = len(instance.colors)
+    return replace(
+        instance,
+        colors=(*instance.colors, "-".join(("nothing", *instance.colors))),  # no other name
+        cells=tuple(replace(cell, colors=(*cell.colors, nothing)) for cell in instance.cells),
+        edges=tuple(replace(e, colors=instance.joinable(e.id)) for e in instance.edges),
+    )
