@@ -53,8 +53,14 @@ class Poses:
 
     def take(self, rows: NDArray[np.intp]) -> Poses:
         """The poses of some of the configurations."""
-        moved = self.rotation, self.origin, self.axis, self.tip, self.tool_axis
-        return Poses(*(each[rows] for each in moved), self.slides)
+        return Poses(
+            self.rotation[rows],
+            self.origin[rows],
+            self.axis[rows],
+            self.tip[rows],
+            self.tool_axis[rows],
+            self.slides,
+        )
 
 
 def forward(robot: Robot, configurations: Array) -> Poses:
