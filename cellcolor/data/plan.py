@@ -107,7 +107,7 @@ class ContactPath(Value):
         if isinstance(trajectory, Trajectory):
             return cls(trajectory.joints, trajectory.points, trajectory.contact)
         points = None if trajectory.poses is None else trajectory.poses[:, :3]
-        return cls(trajectory.joints, points, trajectory.contact)
+        return cls(trajectory.joints, points, trajectory.marked("contact"))
 
     @property
     def stroke(self) -> NDArray[np.int64]:

@@ -21,8 +21,7 @@ from cellcolor.data.bounds import (
     kind_of,
 )
 from cellcolor.data.cells_and_edges import DartName, twin
-from cellcolor.data.coverage import Coverage
-from cellcolor.data.instance import Instance
+from cellcolor.data.instance import Coverage, Instance
 from cellcolor.data.value import Document, Value, adapter_of, read_one_of
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError

@@ -17,7 +17,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.body import Shape
 from cellcolor.frontend.arm.notes import notes_on_shapes, too_large
-from cellcolor.frontend.contact.engine import Contacts, always_touching, pairs_of
+from cellcolor.frontend.contact.engine import Contacts, always_touching, pairs_of, width
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_units
 from cellcolor.frontend.parts.cover import note_on_shell
@@ -204,11 +204,11 @@ def _notes_on_contacts(place: PreparedScene, longest: float) -> Iterator[str]:
         for body in robot.bodies
         if body.joint == robot.joints
     ]
-    widths += [(solid.width, f"obstacle[{k}]") for k, solid in enumerate(place.obstacles)]
-    width, name = min(widths, default=(longest, ""))
-    if longest > width:  # a vertex says nothing of what is far from it
+    widths += [(width(solid), f"obstacle[{k}]") for k, solid in enumerate(place.obstacles)]
+    wide, name = min(widths, default=(longest, ""))
+    if longest > wide:  # a vertex says nothing of what is far from it
         yield (
-            f"the object's edges are up to {longest:.3g} m long and {name} is {width:.3g} m wide: "
+            f"the object's edges are up to {longest:.3g} m long and {name} is {wide:.3g} m wide: "
             "between vertices something can stand unnoticed (max_edge_m, target_vertices)"
         )
     if not robot.has_solids:

@@ -229,4 +229,4 @@ def joint_space(prepared: PreparedScene) -> JointSpace:
     robot, limits = prepared.robot, (prepared.robot.lower, prepared.robot.upper)
     if not prepared.setup.constraints.collision:
         limits = np.full(robot.joints, -np.inf), np.full(robot.joints, np.inf)
-    return JointSpace.of(robot.slides, *limits, prepared.arm.kinematics.reach)
+    return JointSpace(robot.slides, *limits, prepared.arm.kinematics.reach)

@@ -30,11 +30,10 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.questions.set_ups import Region, side_by_side
-from cellcolor.questions.tradeoff import few_that_cover
+from cellcolor.questions.tradeoff import few_that_cover, solved_model
 from cellcolor.solvers import checked
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.interface import PORTFOLIO, Options
-from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
 
 _WHOLE = 2**40
 """What all vertices weigh together as integers, for CP-SAT: a share is told to 1e-12."""
@@ -226,16 +225,10 @@ class _Asked:
         Raises:
             OutOfTime: none was found in time.
         """
-        workers = self.options.workers or PORTFOLIO
-        solver = make_cp_solver(self.options.deadline, workers, self.options.seed)
         # By measure, with 200 set-ups of which all have to be covered: 15 s instead of minutes.
-        solver.parameters.linearization_level = 0 if self.everything else 2
-        status, interrupt = solve_interruptibly(solver, model)
-        if interrupt is not None:
-            raise interrupt
-        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            raise OutOfTime
-        return solver
+        level = 0 if self.everything else 2
+        asked = self.options
+        return solved_model(model, asked.deadline, asked.workers or PORTFOLIO, asked.seed, level)
 
     def regions_of(self, set_ups: Collection[int]) -> frozenset[int]:
         """The numbers of all regions of some set-ups."""

@@ -17,7 +17,7 @@ from ortools.sat.python import cp_model
 from cellcolor.data.instance import Instance
 from cellcolor.data.shares import cell_weights
 from cellcolor.data.solution import Solution
-from cellcolor.deadline import OutOfTime
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.questions.answers import Front, FrontPoint
 from cellcolor.solvers import checked
 from cellcolor.solvers.bounds.cover import color_regions
@@ -101,6 +101,24 @@ def few_that_cover(instance: Instance, share: float, options: Options) -> tuple[
         if part.segments is not None and part.segments < best.segments:
             best = FrontPoint(part.segments, covered, 1.0, left_out, part, False)
     return best, asked.whole.surface_lower_bound if least is None else least
+
+
+def solved_model(
+    model: cp_model.CpModel, deadline: Deadline, workers: int, seed: int, linearization: int = 2
+) -> cp_model.CpSolver:
+    """The solver with a choice; as for set covers, the bound comes from the linear relaxation.
+
+    Raises:
+        OutOfTime: none was found in time.
+    """
+    solver = make_cp_solver(deadline, workers, seed)
+    solver.parameters.linearization_level = linearization
+    status, interrupt = solve_interruptibly(solver, model)
+    if interrupt is not None:
+        raise interrupt
+    if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+        raise OutOfTime
+    return solver
 
 
 class _Asked:
@@ -195,14 +213,7 @@ class _Asked:
             model.add_bool_or([~covered, *literals])
             gains.append(weight * covered)
         model.maximize(sum(gains))
-        solver = make_cp_solver(self._options.deadline, 1, 0)
-        # As for set covers, the bound comes from the linear relaxation.
-        solver.parameters.linearization_level = 2
-        status, interrupt = solve_interruptibly(solver, model)
-        if interrupt is not None:
-            raise interrupt
-        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            raise OutOfTime
+        solver = solved_model(model, self._options.deadline, workers=1, seed=0)
         found: set[int] = set()
         for literal, (_, cells) in zip(chosen, self._regions, strict=True):
             if solver.value(literal):

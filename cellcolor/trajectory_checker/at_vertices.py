@@ -12,7 +12,7 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.data.plan import ContactPath
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.inverse import is_tool_on_last_axis, pose_at_zero
+from cellcolor.frontend.arm.inverse import is_tool_on_last_axis
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult
 from cellcolor.memory import chunks
@@ -182,5 +182,5 @@ def _compared(robot: Robot) -> Mask:
     A last one about the tool's axis does not, if the tool's turn is free.
     """
     compared = np.ones(robot.joints, dtype=bool)
-    compared[-1] = robot.task.turn or not is_tool_on_last_axis(pose_at_zero(robot))
+    compared[-1] = robot.task.turn or not is_tool_on_last_axis(robot)
     return compared

@@ -21,7 +21,7 @@ MIXED = st.lists(
 def space(slides: list[bool], lower: float = -2.0, upper: float = 3.0) -> JointSpace:
     """Joints with the same limits, on an arm that reaches 0.5 m."""
     count = len(slides)
-    return JointSpace.of(np.array(slides), np.full(count, lower), np.full(count, upper), 0.5)
+    return JointSpace(np.array(slides), np.full(count, lower), np.full(count, upper), 0.5)
 
 
 @given(MIXED)

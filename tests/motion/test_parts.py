@@ -23,7 +23,7 @@ UP = np.array([0.0, 0.0, 1.0])
 def turning(lower: list[float], upper: list[float]) -> JointSpace:
     """Joints that all turn, with these limits."""
     slides = np.zeros(len(lower), dtype=bool)
-    return JointSpace.of(slides, np.array(lower), np.array(upper), 1.0)
+    return JointSpace(slides, np.array(lower), np.array(upper), 1.0)
 
 
 def stroke(joints: np.ndarray, segment: int = 0) -> Stroke:

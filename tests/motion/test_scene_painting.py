@@ -15,7 +15,7 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER
 from cellcolor.decomposition import decomposition_of
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
+from cellcolor.frontend.arm.kinematics import forward, task_determinant
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
@@ -114,7 +114,7 @@ def test_costs_by_hand(wok: BuildResult) -> None:
     rows, branches = np.nonzero(candidates.valid)
     joints = candidates.configurations[rows, branches]
     poses = forward(robot, joints)
-    determinants = task_determinant(*tip_jacobian(poses), poses.tool_axis, robot.task)
+    determinants = task_determinant(poses, robot.task)
     for row, branch, q, determinant in zip(rows, branches, joints, determinants, strict=True):
         room = [
             max(

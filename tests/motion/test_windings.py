@@ -56,7 +56,7 @@ def around_the_base() -> Steps:
 def turning_by(degrees: float) -> JointSpace:
     """One joint that turns so far each way."""
     limits = np.deg2rad([degrees])
-    return JointSpace.of(np.zeros(1, dtype=bool), -limits, limits, 1.0)
+    return JointSpace(np.zeros(1, dtype=bool), -limits, limits, 1.0)
 
 
 def test_four_vertices_around_the_base() -> None:

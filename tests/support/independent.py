@@ -13,11 +13,9 @@ from world import PAIRS, World
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.kinematics import (
     forward,
-    gravity_torques,
     manipulability,
     static_torques,
     task_determinant,
-    tip_jacobian,
 )
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.setup import Setup
@@ -44,11 +42,11 @@ def kinematics_apart(robot: Robot, joints: Array, torques: bool = True) -> float
         torques: whether those that gravity and a push of 20 N need are compared as well.
     """
     gravity, task, poses = np.array([0.3, -1.0, -9.81]), robot.task, forward(robot, joints)
-    linear, angular = tip_jacobian(poses)
-    volume = manipulability(linear, task)
-    determinant = task_determinant(linear, angular, poses.tool_axis, task)
-    gravity_alone = gravity_torques(robot, poses, gravity)
-    pressed = static_torques(robot, poses, linear, gravity, 20.0)
+    linear, angular = poses.jacobian
+    volume = manipulability(poses, task)
+    determinant = task_determinant(poses, task)
+    gravity_alone = static_torques(robot, poses, gravity, 0.0)
+    pressed = static_torques(robot, poses, gravity, 20.0)
     model, data = robot.model, robot.model.createData()
     model.gravity.linear = gravity
     tip, around = model.getFrameId("tool_tip"), pin.ReferenceFrame.LOCAL_WORLD_ALIGNED

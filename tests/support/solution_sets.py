@@ -17,7 +17,6 @@ from cellcolor.frontend.arm.kinematics import (
     forward,
     signed_task_determinant,
     task_determinant,
-    tip_jacobian,
 )
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
@@ -43,7 +42,7 @@ def from_many_starts(
             error = np.concatenate([point - poses.tip, direction - poses.tool_axis], axis=1)
             off[rows] = np.abs(error).max(axis=1)
             going = off[rows] > DONE
-            linear, angular = tip_jacobian(poses)
+            linear, angular = poses.jacobian
             # The tool's axis moves by the cross product with the angular velocity.
             turned = np.cross(angular, poses.tool_axis[:, :, None], axisa=1, axisb=1, axisc=1)
             jacobian = np.concatenate([linear, turned], axis=1)[going, :, :JOINTS]
@@ -72,7 +71,7 @@ def near_singular(robot: Robot, kind: str, off: float, count: int) -> Array:
 
     def determinant(angle: float, row: Array) -> float:
         poses = forward(robot, np.where(np.arange(6) == joint, angle, row)[None])
-        return float(signed_task_determinant(*tip_jacobian(poses), poses.tool_axis)[0])
+        return float(signed_task_determinant(poses)[0])
 
     turns = np.linspace(-3.1, 3.0, 20)
     for row in np.random.default_rng(29).uniform(-np.pi, np.pi, (20 * count, 6)):
@@ -121,7 +120,7 @@ class Arm:
     def is_regular(self, five: Array) -> Mask:
         """Which of some solutions (s, 5) are not about to meet another one, (s,)."""
         poses = forward(self.robot, np.column_stack([five, np.zeros(len(five))]))
-        determinant = task_determinant(*tip_jacobian(poses), poses.tool_axis)
+        determinant = task_determinant(poses)
         return np.asarray(determinant > REGULAR * self.family.reach**3)
 
     def different(self, q: Array, starts: int) -> tuple[int, int]:

@@ -6,7 +6,7 @@ Each engine makes of a shape what it works with.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -106,22 +106,6 @@ class Shape:
             faces = np.array(mesh.faces, dtype=np.int64)
         return points @ self.rotation.T + self.origin, faces
 
-    @property
-    def width(self) -> float:
-        """The second of its three extents, m: of a plate not how thick it is."""
-        if self.kind == "half-space":
-            return np.inf
-        if self.kind == "sphere":
-            return 2 * self.sizes[0]
-        extents: Sequence[float] = self.sizes
-        if self.kind in ("cylinder", "cone", "capsule"):
-            across = 2 * self.sizes[0]
-            extents = (across, across, self.sizes[1] + (across if self.kind == "capsule" else 0.0))
-        elif self.kind != "box":
-            cell = self.sizes[0] if self.kind == "cells" else 0.0
-            extents = (np.ptp(self.vertices, axis=0) + cell).tolist()
-        return sorted(extents)[1]
-
 
 def one_of_each_part(vertices: Array, faces: Index) -> Array:
     """A vertex (parts, 3) of each part of a mesh whose faces hang together."""
@@ -169,6 +153,15 @@ class Body:
     def length(self) -> float:
         """Distance between the ends in m."""
         return float(np.linalg.norm(self.end - self.start))
+
+    @property
+    def outline(self) -> Array:
+        """The ends (2, 3) of its axis, or the corners (8, 3) around a solid, m.
+
+        No point of the axis or the solid moves farther than one of these: its displacement is a
+        mean of theirs.
+        """
+        return np.array([self.start, self.end]) if self.solid is None else self.solid.corners
 
     @cached_property
     def shape(self) -> Shape:

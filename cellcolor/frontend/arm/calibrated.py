@@ -34,7 +34,6 @@ from cellcolor.frontend.arm.kinematics import (
     nearest_points,
     signed_task_determinant,
     task_jacobian,
-    tip_jacobian,
 )
 from cellcolor.frontend.arm.newton import Polished, nearest
 from cellcolor.frontend.arm.robot import Robot
@@ -122,7 +121,7 @@ def missing(robot: Robot, solutions: Array) -> Index:
         part = solutions[rows]
         there = np.nonzero(~np.isnan(part[:, :, 0]))
         poses = forward(robot, part[there])
-        determinants = signed_task_determinant(*tip_jacobian(poses), poses.tool_axis)
+        determinants = signed_task_determinant(poses)
         lost[rows] = np.abs(np.bincount(there[0], np.sign(determinants), minlength=len(part)))
     return lost
 

@@ -139,13 +139,9 @@ def _tool_off_last_axis(poses: Poses) -> tuple[float, float]:
     return float(np.linalg.norm(beside)), float(np.linalg.norm(np.cross(poses.tool_axis[0], axis)))
 
 
-def is_tool_on_last_axis(poses: Poses) -> bool:
-    """Whether turning the last joint moves neither the tip nor the tool's direction.
-
-    Args:
-        poses: of one configuration.
-    """
-    return max(_tool_off_last_axis(poses)) <= _TOLERANCE
+def is_tool_on_last_axis(robot: Robot) -> bool:
+    """Whether turning the last joint moves neither the tip nor the tool's direction."""
+    return max(_tool_off_last_axis(pose_at_zero(robot))) <= _TOLERANCE
 
 
 class SixRevolute(InverseKinematics):
@@ -170,8 +166,8 @@ class SixRevolute(InverseKinematics):
             message = "outside the limits of the sixth joint"
             raise InputError(None, "robot.locked_joint_6_rad", message)
         self._robot, self._locked, self._poses = robot, locked, pose_at_zero(robot)
-        if not is_tool_on_last_axis(self._poses):
-            off, sine = _tool_off_last_axis(self._poses)
+        off, sine = _tool_off_last_axis(self._poses)
+        if max(off, sine) > _TOLERANCE:
             message = (
                 f"{kind}: the tool tip and its z axis must lie on this joint's axis, or the arm is "
                 "redundant, since the tool's turn is free (the turn, or a finite set of turns, is "
@@ -179,7 +175,7 @@ class SixRevolute(InverseKinematics):
                 f"{np.degrees(np.arcsin(min(sine, 1.0))):.3g} degrees (mount_position_m and "
                 "mount_rpy_rad under [robot] move the tool)"
             )
-            raise InputError(str(robot.files[0]), f"joint[{robot.joint_names[-1]}]", message)
+            raise robot.refused(-1, message)
 
     def _set_sizes(self, files: RobotFiles, directions: Array, points: Array) -> None:
         """Reach, lever and viewpoints of an arm with these axes; refused if the tool is too long.

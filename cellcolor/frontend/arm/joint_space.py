@@ -23,19 +23,18 @@ class JointSpace:
     Attributes:
         slides: (joints,) which joints are prismatic.
         lower, upper: (joints,) limits; infinite where there are none.
-        units: (joints,) how far each joint moves while one that turns moves by 1 rad, where bounds
-            are the same for all joints: 1 for those that turn.
+        reach: of the arm, m: a slide over it counts as 1 rad.
     """
 
     slides: Mask
     lower: Array
     upper: Array
-    units: Array
+    reach: float
 
-    @classmethod
-    def of(cls, slides: Mask, lower: Array, upper: Array, reach: float) -> JointSpace:
-        """Joints of an arm of this reach (m): a slide over the reach counts as 1 rad."""
-        return cls(slides, lower, upper, np.where(slides, reach, 1.0))
+    @property
+    def units(self) -> Array:
+        """(joints,) how far each moves for 1 rad, where bounds are the same for all joints."""
+        return np.where(self.slides, self.reach, 1.0)
 
     @property
     def period(self) -> Array:

@@ -7,6 +7,7 @@ in the tests.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array, Mask, unit
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.robot import FREE_TURN, Robot, TaskSpace
-from cellcolor.frontend.setup import Continuity, Setup, Thresholds
+from cellcolor.frontend.setup import Setup
 
 TASK_JOINTS = FREE_TURN.joints  # a sixth turns about the tool's own axis and does not move the task
 
@@ -38,6 +39,18 @@ class Poses:
     tool_axis: Array
     slides: Mask
 
+    @cached_property
+    def jacobian(self) -> tuple[Array, Array]:
+        """Linear and angular Jacobian of the tip, (n, 3, joints) each: m and rad per rad.
+
+        Per m of a prismatic joint, which moves the tip along its axis and turns nothing.
+        """
+        linear, angular = np.cross(self.axis, self.tip[:, None] - self.origin[:, 1:]), self.axis
+        if self.slides.any():
+            slides = self.slides[:, None]
+            linear, angular = np.where(slides, angular, linear), np.where(slides, 0.0, angular)
+        return linear.transpose(0, 2, 1), angular.transpose(0, 2, 1)
+
     def take(self, rows: NDArray[np.intp]) -> Poses:
         """The poses of some of the configurations."""
         return Poses(
@@ -60,27 +73,23 @@ def forward(robot: Robot, configurations: Array) -> Poses:
     rotation[:, 0], origin[:, 0] = np.eye(3), 0.0
     for joint in range(robot.joints):
         fixed, (x, y, z) = robot.placement[joint], robot.axis[joint]
-        if robot.slides[joint]:
-            rotation[:, joint + 1] = turned(rotation[:, joint], fixed[:3, :3])
-            axis[:, joint] = turned(rotation[:, joint + 1], robot.axis[joint])
-            origin[:, joint + 1] = origin[:, joint] + turned(rotation[:, joint], fixed[:3, 3])
-            origin[:, joint + 1] += configurations[:, joint, None] * axis[:, joint]
-            continue
         # Rodrigues' formula, its constant matrices multiplied for all configurations at once.
         cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
         before, once, twice = (
             turned(rotation[:, joint], fixed[:3, :3] @ turn)
             for turn in (np.eye(3), cross, cross @ cross)
         )
-        sine, cosine = np.sin(configurations[:, joint]), np.cos(configurations[:, joint])
-        once *= sine[:, None, None]
-        twice *= (1.0 - cosine)[:, None, None]
+        turn = configurations[:, joint] * (not robot.slides[joint])
+        once *= np.sin(turn)[:, None, None]
+        twice *= (1.0 - np.cos(turn))[:, None, None]
         before += once
         before += twice
         rotation[:, joint + 1] = before
         origin[:, joint + 1] = origin[:, joint] + turned(rotation[:, joint], fixed[:3, 3])
         # The axis stays where it is when the joint turns.
         axis[:, joint] = turned(before, robot.axis[joint])
+        if robot.slides[joint]:
+            origin[:, joint + 1] += configurations[:, joint, None] * axis[:, joint]
     tip = origin[:, -1] + turned(rotation[:, -1], robot.tip[:3, 3])
     tool_axis = turned(rotation[:, -1], robot.tip[:3, 2])
     return Poses(rotation, origin, axis, tip, tool_axis, robot.slides)
@@ -92,44 +101,24 @@ def turned(rotation: Array, columns: Array) -> Array:
     return product
 
 
-def tip_jacobian(poses: Poses) -> tuple[Array, Array]:
-    """Linear and angular Jacobian of the tip, (n, 3, joints) each: m and rad per rad.
-
-    Per m of a prismatic joint, which moves the tip along its axis and turns nothing.
-    """
-    arm = poses.tip[:, None] - poses.origin[:, 1:]
-    linear, angular = np.cross(poses.axis, arm), poses.axis
-    if poses.slides.any():
-        slides = poses.slides[:, None]
-        linear, angular = np.where(slides, angular, linear), np.where(slides, 0.0, angular)
-    return linear.transpose(0, 2, 1), angular.transpose(0, 2, 1)
-
-
 def tool_across(robot: Robot, poses: Poses) -> Array:
     """The tool's x axis (n, 3) in the world, across the tool."""
     return turned(poses.rotation[:, -1], robot.tip[:3, 0])
 
 
-def manipulability(linear: Array, task: TaskSpace = FREE_TURN) -> Array:
+def manipulability(poses: Poses, task: TaskSpace = FREE_TURN) -> Array:
     """Translational manipulability sqrt(det(J J^T)) of the task's joints, (n,), m^3.
 
     Yoshikawa, Translational and rotational manipulability of robotic manipulators, 1990. In a plane
     J has two rows, whichever two directions they are for, and the unit is m^2. For each prismatic
     joint there is a meter less in the unit, if all minors of J that are not zero have its column.
     """
-    columns = linear[:, :, : task.joints]
+    columns = _position_rows(poses, task)[:, :, : task.joints]
     gram = columns @ columns.transpose(0, 2, 1)
-    if task.plane:
-        # The product of the two eigenvalues that are not zero, from their sum and sum of squares.
-        total, squares = np.einsum("nii->n", gram), np.einsum("nij,nji->n", gram, gram)
-        return np.asarray(np.sqrt(np.maximum(total**2 - squares, 0.0) / 2))
-    measure: Array = np.sqrt(np.maximum(np.linalg.det(gram), 0.0))
-    return measure
+    return np.asarray(np.sqrt(np.maximum(np.linalg.det(gram), 0.0)))
 
 
-def task_determinant(
-    linear: Array, angular: Array, tool_axis: Array, task: TaskSpace = FREE_TURN
-) -> Array:
+def task_determinant(poses: Poses, task: TaskSpace = FREE_TURN) -> Array:
     """Absolute determinant (n,) of the task's Jacobian, m^3; m^2 in a plane.
 
     For each prismatic joint there is a meter less.
@@ -140,22 +129,31 @@ def task_determinant(
     it vanishes at every singularity of the task, the aligned wrist included. With fewer joints than
     rows it is the volume that their columns span, lengths in m and angles in rad mixed.
     """
-    return np.asarray(np.abs(signed_task_determinant(linear, angular, tool_axis, task)))
+    return np.asarray(np.abs(signed_task_determinant(poses, task)))
 
 
-def signed_task_determinant(
-    linear: Array, angular: Array, tool_axis: Array, task: TaskSpace = FREE_TURN
-) -> Array:
+def signed_task_determinant(poses: Poses, task: TaskSpace = FREE_TURN) -> Array:
     """The task determinant (n,) in m^3 with its sign, which no motion without singularity changes.
 
     The rows of the direction are two that make a right-handed frame with the tool. With fewer
     joints than rows there is no sign.
     """
-    rows = _rows(linear, angular, tool_axis, task)
-    if rows.shape[2] == task.dimensions:
-        return np.asarray(np.linalg.det(rows))
-    gram = rows.transpose(0, 2, 1) @ rows
+    rows, angular = [_position_rows(poses, task)], poses.jacobian[1]
+    if task.direction:
+        rows.append(two_across(poses.tool_axis) @ angular)
+    if task.turn:
+        rows.append(poses.tool_axis[:, None] @ angular)
+    whole = np.concatenate(rows, axis=1)[:, :, : task.joints]
+    if whole.shape[2] == task.dimensions:
+        return np.asarray(np.linalg.det(whole))
+    gram = whole.transpose(0, 2, 1) @ whole
     return np.asarray(np.sqrt(np.maximum(np.linalg.det(gram), 0.0)))
+
+
+def _position_rows(poses: Poses, task: TaskSpace) -> Array:
+    """How the tip moves with all joints, (n, 3, joints); (n, 2, joints) in a plane."""
+    linear = poses.jacobian[0]
+    return two_across(poses.tool_axis) @ linear if task.plane else linear
 
 
 def task_jacobian(poses: Poses) -> tuple[Array, Array]:
@@ -165,20 +163,8 @@ def task_jacobian(poses: Poses) -> tuple[Array, Array]:
         (n, 5, task joints), three rows of the position and two of the direction; and (n, 2, 3) the
         unit vectors across the tool that the last two are angular velocities about.
     """
-    linear, angular = tip_jacobian(poses)
-    across = two_across(poses.tool_axis)
+    (linear, angular), across = poses.jacobian, two_across(poses.tool_axis)
     return np.concatenate([linear, across @ angular], axis=1)[:, :, :TASK_JOINTS], across
-
-
-def _rows(linear: Array, angular: Array, tool_axis: Array, task: TaskSpace) -> Array:
-    """The task's Jacobian (n, dimensions, task joints), m and rad per rad."""
-    across = two_across(tool_axis)
-    rows = [across @ linear if task.plane else linear]
-    if task.direction:
-        rows.append(across @ angular)
-    if task.turn:
-        rows.append(tool_axis[:, None] @ angular)
-    return np.concatenate(rows, axis=1)[:, :, : task.joints]
 
 
 def two_across(tool_axis: Array) -> Array:
@@ -189,10 +175,12 @@ def two_across(tool_axis: Array) -> Array:
     return np.stack([first, np.cross(tool_axis, first)], axis=1)
 
 
-def gravity_torques(robot: Robot, poses: Poses, gravity: Array) -> Array:
-    """Torques (n, joints) in N m that hold arm and tool still against gravity (3,) in m/s^2.
+def static_torques(robot: Robot, poses: Poses, gravity: Array, normal_force: float) -> Array:
+    """Torques (n, joints) in N m that hold arm and tool still; forces in N of prismatic joints.
 
-    Forces in N of prismatic joints.
+    Args:
+        gravity: (3,) in m/s^2.
+        normal_force: with which the tip presses along the tool axis, N.
     """
     centers = poses.origin[:, 1:] + np.einsum("njab,jb->nja", poses.rotation[:, 1:], robot.center)
     # Mass and first moment of all that hangs behind each joint.
@@ -201,20 +189,8 @@ def gravity_torques(robot: Robot, poses: Poses, gravity: Array) -> Array:
     lever = moments - behind[:, None] * poses.origin[:, 1:]
     loads = np.cross(lever, gravity)
     loads[:, poses.slides] = (behind[:, None] * gravity)[poses.slides]
-    torques: Array = -np.einsum("nja,nja->nj", poses.axis, loads)
-    return torques
-
-
-def static_torques(
-    robot: Robot, poses: Poses, linear: Array, gravity: Array, normal_force: float
-) -> Array:
-    """Torques (n, joints) in N m while the tip presses along the tool axis with a force in N.
-
-    Forces in N of prismatic joints. Gravity plus J^T times the force that the robot exerts on the
-    surface.
-    """
-    push: Array = normal_force * np.einsum("naj,na->nj", linear, poses.tool_axis)
-    return gravity_torques(robot, poses, gravity) + push
+    push = normal_force * np.einsum("naj,na->nj", poses.jacobian[0], poses.tool_axis)
+    return np.asarray(push - np.einsum("nja,nja->nj", poses.axis, loads))
 
 
 _TRIES = 4096
@@ -274,28 +250,25 @@ def conditioning(setup: Setup, reach: float, robot: Robot) -> Conditioning:
     Raises:
         InputError: one is in cubic meters and the measures are not; names the key.
     """
-    limits, policy = setup.thresholds, setup.continuity
-    lengths = robot.task.lengths - int(robot.slides.sum())
-    return Conditioning(
-        _measure("thresholds", limits, "min_manipulability", reach, lengths),
-        _measure("thresholds", limits, "min_task_determinant", reach, lengths),
-        _measure("continuity", policy, "near_singular_determinant", reach, lengths),
-    )
+    lengths, found = robot.task.lengths - int(robot.slides.sum()), {}
+    for table, name in _MEASURES:
+        given = getattr(setup, table)
+        share, absolute = getattr(given, name), getattr(given, f"{name}_m3")  # the setup has one
+        if absolute is not None and lengths != 3:
+            message = (
+                f"of this arm it is no volume, but m^{lengths}: give a share of that power of the "
+                f"reach, {name}"
+            )
+            raise InputError(None, f"{table}.{name}_m3", message)
+        found[name] = float(share * reach**lengths if absolute is None else absolute)
+    return Conditioning(**found)
 
 
-def _measure(
-    table: str, given: Thresholds | Continuity, name: str, reach: float, lengths: int
-) -> float:
-    absolute, share = getattr(given, f"{name}_m3"), getattr(given, name)
-    if absolute is None:
-        return float(share * reach**lengths)  # one of both: the setup has been checked
-    if lengths != 3:
-        message = (
-            f"of this arm it is no volume, but m^{lengths}: give a share of that power of the "
-            f"reach, {name}"
-        )
-        raise InputError(None, f"{table}.{name}_m3", message)
-    return float(absolute)
+_MEASURES = (
+    ("thresholds", "min_manipulability"),
+    ("thresholds", "min_task_determinant"),
+    ("continuity", "near_singular_determinant"),
+)
 
 
 def nearest_points(p: Array, u: Array, q: Array, v: Array) -> tuple[Array, Array]:

@@ -88,9 +88,7 @@ class OffsetWrist(SixRevolute):
         self.lever = float(np.linalg.norm(self._tip - self._center))
 
     def _refused(self, joint: int, why: str) -> InputError:
-        field = f"joint[{self._robot.joint_names[joint]}]"
-        message = f"not an arm with an offset wrist: {why}"
-        return InputError(str(self._robot.files[0]), field, message)
+        return self._robot.refused(joint, f"not an arm with an offset wrist: {why}")
 
     def solve(
         self,

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array, Mask
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.inverse import InverseKinematics, pose_at_zero
+from cellcolor.frontend.arm.kinematics import frames_along
 from cellcolor.frontend.arm.robot import (
     FREE_IN_PLANE,
     GIVEN_IN_PLANE,
@@ -58,13 +59,11 @@ class PlanarTwo(InverseKinematics):
         poses, self._turning = pose_at_zero(robot), robot.turning
         axes, origins, tip = poses.axis[0], poses.origin[0, 1:][self._turning], poses.tip[0]
         up = -poses.tool_axis[0]
-        for name, axis in zip(robot.joint_names, axes, strict=True):
+        for joint, axis in enumerate(axes):
             if np.linalg.norm(np.cross(axis, up)) > _TOLERANCE:
                 message = "not a planar arm: its axis is not parallel to the tool's z axis"
-                raise InputError(str(robot.files[0]), f"joint[{name}]", message)
-        across = np.cross(up, np.eye(3)[np.argmin(np.abs(up))])
-        across /= np.linalg.norm(across)
-        self._frame = np.column_stack([across, np.cross(up, across), up])
+                raise robot.refused(joint, message)
+        self._frame = frames_along(up[None])[0]
         self._tool, self._height = -up, float(tip @ up)
         self._shoulder, elbow, end = (
             (place @ self._frame)[:2] for place in (origins[0], origins[1], tip)
@@ -72,9 +71,8 @@ class PlanarTwo(InverseKinematics):
         upper, fore = elbow - self._shoulder, end - elbow
         self._upper, self._fore = float(np.linalg.norm(upper)), float(np.linalg.norm(fore))
         if min(self._upper, self._fore) < _TOLERANCE:
-            name = robot.joint_names[self._turning[int(self._upper >= _TOLERANCE)]]
-            message = "not a planar arm: the link behind it has no length"
-            raise InputError(str(robot.files[0]), f"joint[{name}]", message)
+            joint = self._turning[int(self._upper >= _TOLERANCE)]
+            raise robot.refused(joint, "not a planar arm: the link behind it has no length")
         first = np.arctan2(upper[1], upper[0])
         self._zero = np.array([first, np.arctan2(fore[1], fore[0]) - first])
         self._sign = np.sign(axes[self._turning[:2]] @ up)

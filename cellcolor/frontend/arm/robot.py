@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from cellcolor.arrays import Array, Index, Mask
+from cellcolor.errors import InputError
 from cellcolor.frontend.arm.body import Body, MeshBody
 
 
@@ -153,6 +154,10 @@ class Robot:
         elif link not in standing:
             raise KeyError(link)
         return self.frame_of(link)
+
+    def refused(self, joint: int, message: str) -> InputError:
+        """An error that names a joint and the arm's file."""
+        return InputError(str(self.files[0]), f"joint[{self.joint_names[joint]}]", message)
 
     @property
     def stand_ins(self) -> tuple[MeshBody, ...]:

@@ -30,7 +30,6 @@ from cellcolor.frontend.arm.kinematics import (
     forward,
     nearest_points,
     signed_task_determinant,
-    tip_jacobian,
 )
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.memory import chunks
@@ -107,7 +106,7 @@ class Signs:
             negative = factors < 0
             # The product of the plain factors: the second one has the sign of the first in it.
             product = np.where(negative[:, 1] ^ negative[:, 2], -1.0, 1.0)
-            determinant = signed_task_determinant(*tip_jacobian(poses), poses.tool_axis)
+            determinant = signed_task_determinant(poses)
             wrong = np.flatnonzero(product * determinant * self.parity < 0)
             nearest = np.argmin(np.abs(factors[wrong]), axis=1)
             negative[wrong, nearest] ^= True
@@ -166,7 +165,7 @@ def _parity(robot: Robot, signs: Signs) -> float:
     poses = forward(robot, np.random.default_rng(0).uniform(-np.pi, np.pi, (200, robot.joints)))
     factors = signs.factors(poses)
     clear = int(np.argmax(np.abs(factors).min(axis=1)))
-    determinant = signed_task_determinant(*tip_jacobian(poses), poses.tool_axis)
+    determinant = signed_task_determinant(poses)
     return float(np.sign(determinant[clear] * factors[clear, 1] * factors[clear, 2]))
 
 

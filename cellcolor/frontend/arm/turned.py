@@ -139,9 +139,7 @@ class TurnedKinematics(InverseKinematics):
         if files.locked_joint_6_rad is not None:
             message = "no joint is locked with the tool's turn given (task.turn): leave it out"
             raise InputError(None, "robot.locked_joint_6_rad", message)
-        _check_slides(robot)
-        if not family.given_turn.direction:
-            _check_along(robot)
+        _check_last_axis(robot, tilted=family.given_turn.direction)
         self._robot, self.turn = robot, turn
         self.straight = on_last_axis(robot)
         # What the last joint is locked at does not matter: it is solved for afterwards.
@@ -168,14 +166,12 @@ class TurnedKinematics(InverseKinematics):
         self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
     ) -> Array:
         """No solution where the rule says nothing."""
-        directions = self.taken(directions)
-        across = turn_at(self.turn, points, directions)
         if branches is not None:
             number, branch = np.divmod(branches, len(self.own.branches))
-            turned = turned_about(directions, across, self._angles[number])
-            return self.solve_pose(points, directions, turned, branch)
+            tools = self._tools(points, directions, self._angles[number])
+            return self.solve_pose(points, *tools, branch)
         every = [
-            self.solve_pose(points, directions, turned_about(directions, across, angle))
+            self.solve_pose(points, *self._tools(points, directions, angle))
             for angle in self._angles
         ]
         return np.concatenate(every, axis=1)
@@ -222,10 +218,13 @@ class TurnedKinematics(InverseKinematics):
         Both are NaN where the rule says nothing.
         """
         angle = self._angles[0] if angle is None else angle
+        return self._on_last_axis(points, *self._tools(points, directions, angle))[1:]
+
+    def _tools(self, points: Array, directions: Array, angle: Array | float) -> tuple[Array, Array]:
+        """The tool's z and x axes, (n, 3) each, turned by angles (n,) or one from the rule's."""
         directions = self.taken(directions)
         across = turn_at(self.turn, points, directions)
-        turned_by = turned_about(directions, across, np.array(angle))
-        return self._on_last_axis(points, directions, turned_by)[1:]
+        return directions, turned_about(directions, across, np.asarray(angle))
 
     def with_own(self, own: InverseKinematics) -> TurnedKinematics:
         """The same with other branches; there is one turn."""
@@ -244,30 +243,22 @@ class TurnedKinematics(InverseKinematics):
         return rotation, origin + rotation @ tip[:3, 3], rotation @ tip[:3, 2]
 
 
-def _check_slides(robot: Robot) -> None:
-    """Refuse a prismatic joint behind the last one that turns, unless it slides along its axis.
+def _check_last_axis(robot: Robot, tilted: bool) -> None:
+    """Refuse an arm if a tool cannot be thought on its last axis that turns, instead of its own.
 
-    Otherwise no other tool stays on that axis.
+    What slides behind that joint has to slide along its axis, or no tool stays on it. And if no
+    joint can tilt the tool (``tilted``), its own is along the axis as well: it would be taken for
+    the one on the axis.
     """
-    poses, last = pose_at_zero(robot), robot.turning[-1] if len(robot.turning) else -1
-    if last < 0:
+    if not len(robot.turning):
         raise InputError(str(robot.files[0]), "robot", "no joint turns, so none can turn the tool")
-    for joint in range(last + 1, robot.joints):
-        if np.linalg.norm(np.cross(poses.axis[0, joint], poses.axis[0, last])) > _PARALLEL:
-            name = robot.joint_names[joint]
-            message = "slides across the last axis that turns, so the tool's turn cannot be given"
-            raise InputError(str(robot.files[0]), f"joint[{name}]", message)
-
-
-def _check_along(robot: Robot) -> None:
-    """Refuse a tool that is tilted on an arm whose tool cannot be tilted by any joint.
-
-    The tool on the last axis points along it, and the true one would be taken for that one.
-    """
     poses, last = pose_at_zero(robot), robot.turning[-1]
-    off = np.linalg.norm(np.cross(poses.tool_axis[0], poses.axis[0, last]))
-    if off > _PARALLEL:
-        name = robot.joint_names[last]
+    off = np.linalg.norm(np.cross(poses.axis[0], poses.axis[0, last]), axis=1)
+    for joint in range(last + 1, robot.joints):
+        if off[joint] > _PARALLEL:
+            message = "slides across the last axis that turns, so the tool's turn cannot be given"
+            raise robot.refused(joint, message)
+    if not tilted and np.linalg.norm(np.cross(poses.tool_axis[0], poses.axis[0, last])) > _PARALLEL:
         message = "not parallel to the tool's z axis, which arms of this family keep along their "
         message += "axes (mount_rpy_rad under [robot] turns the tool)"
-        raise InputError(str(robot.files[0]), f"joint[{name}]", message)
+        raise robot.refused(last, message)

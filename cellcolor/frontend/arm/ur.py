@@ -85,8 +85,7 @@ def ur_geometry(robot: Robot, tolerance: float = _TOLERANCE) -> UrGeometry:
         p = idealized(Axes(w, p), tolerance).points
 
     def refuse(joint: int, message: str) -> InputError:
-        name = robot.joint_names[joint]
-        return InputError(str(robot.files[0]), f"joint[{name}]", f"not a UR-type arm: {message}")
+        return robot.refused(joint, f"not a UR-type arm: {message}")
 
     for joint, other in ((2, 1), (3, 1)):
         if float(np.linalg.norm(np.cross(w[joint], w[other]))) > tolerance:

@@ -151,6 +151,14 @@ def meet(first: Shape, second: Shape) -> bool:
     return bool(coal.collide(*sides[0], *sides[1], request, coal.CollisionResult()))
 
 
+def width(shape: Shape) -> float:
+    """The second of its three extents, m: of a plate not how thick it is."""
+    solid = _geometry(shape)
+    solid.computeLocalAABB()
+    around = solid.aabb_local
+    return float(sorted([around.width(), around.height(), around.depth()])[1])
+
+
 def poses_along(points: Array, directions: Array) -> Array:
     """Poses (k, 7) of a free frame: its origin on points, its z axis along unit vectors (k, 3)."""
     return np.column_stack([points, Rotation.from_matrix(frames_along(directions)).as_quat()])

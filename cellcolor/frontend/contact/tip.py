@@ -7,6 +7,7 @@ the tool's pose, whatever the arm does.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -26,62 +27,48 @@ _DEPTH = 0.00065  # m; a tool of 20 mm radius may move by 10 mm, the upper arm b
 def body_ends(robot: Robot, poses: Poses) -> Array:
     """Both ends of every body's axis in the world, (bodies, 2, n, 3), m."""
     ends = np.empty((len(robot.bodies), 2, len(poses.tip), 3))
-    for index, body in enumerate(robot.bodies):
-        rotation, origin = poses.rotation[:, body.joint], poses.origin[:, body.joint]
-        ends[index, 0] = origin + turned(rotation, body.start)
-        ends[index, 1] = origin + turned(rotation, body.end)
+    for own, body in zip(ends, robot.bodies, strict=True):
+        own[:] = _placed(poses, body, np.array([body.start, body.end]))
     return ends
 
 
-def longest_steps(radii: Array) -> Array:
-    """How far bodies of these radii may move between two tested points of a link, m.
-
-    A ball of radius r that moves by s sweeps a space that its first and last position do not cover
-    completely. The gap is r - sqrt(r^2 - s^2 / 4) deep: at most 0.65 mm.
-    """
-    depth = np.minimum(_DEPTH, radii)
-    return np.asarray(2 * np.sqrt(depth * (2 * radii - depth)))
+def tracked_points(robot: Robot, poses: Poses) -> Array:
+    """The outline of all bodies that can move, in the world, (points, n, 3), m."""
+    points = [_placed(poses, body, body.outline) for body in robot.bodies if body.joint]
+    return np.concatenate([np.empty((0, len(poses.tip), 3)), *points])
 
 
-def tracked_points(robot: Robot, ends: Array, poses: Poses) -> Array:
-    """Points of all bodies that can move, in the world, (points, n, 3), m.
-
-    No point of a body's axis moves farther than one of its ends, and none of a solid farther than
-    a corner of the box around it: its displacement is a mean of theirs.
-    """
-    points = []
-    for body, both in zip(robot.bodies, ends, strict=True):
-        if body.joint == 0:
-            continue
-        if body.solid is None:
-            points.append(both)
-            continue
-        corners = turned(poses.rotation[:, body.joint], body.solid.corners.T)
-        place = corners.transpose(2, 0, 1) + poses.origin[:, body.joint]
-        points.append(place)
-    return np.concatenate([np.empty((0, *ends.shape[2:])), *points])
+def _placed(poses: Poses, body: Body, points: Array) -> Array:
+    """Points (p, 3) that a body carries, in the world, (p, n, 3)."""
+    there = turned(poses.rotation[:, body.joint], points.T).transpose(2, 0, 1)
+    return np.asarray(there + poses.origin[:, body.joint])
 
 
 def tracked_steps(robot: Robot, margin: float, between: float) -> Array:
     """How far each of the tracked points may move between two tests, (points,), m.
 
     A solid may have sharp edges. A stationary object reaches into it by at most half a step less
-    the margin in which nothing may be: 0.65 mm, as for other bodies (:func:`longest_steps`). For
+    the margin in which nothing may be: 0.65 mm, as for other bodies (:func:`longest_step`). For
     two solids that both move it is a whole step less their margin: 1.3 mm.
 
     Args:
         margin: the smallest margin to stationary objects, m.
         between: the margin between links, m.
     """
-    steps: list[float] = []
-    for body in robot.bodies:
-        if body.joint == 0:
-            continue
-        if body.solid is None:
-            steps += longest_steps(np.array([body.radius])).tolist() * 2
-        else:
-            steps += [2 * _DEPTH + min(2 * margin, between)] * 8
-    return np.array(steps)
+    of_solids = 2 * _DEPTH + min(2 * margin, between)
+    moving = [body for body in robot.bodies if body.joint]
+    steps = [longest_step(each.radius) if each.solid is None else of_solids for each in moving]
+    return np.repeat(steps, [len(body.outline) for body in moving])
+
+
+def longest_step(radius: float) -> float:
+    """How far a body of this radius may move between two tested points of a link, m.
+
+    A ball of radius r that moves by s sweeps a space that its first and last position do not cover
+    completely. The gap is r - sqrt(r^2 - s^2 / 4) deep: at most 0.65 mm.
+    """
+    depth = min(_DEPTH, radius)
+    return 2 * math.sqrt(depth * (2 * radius - depth))
 
 
 class Tip:
@@ -132,8 +119,7 @@ class Tip:
         if not self._with_obstacles:
             return free
         way = surface.lengths(edges) + self.body.length * surface.turns(edges)
-        step = float(longest_steps(np.array([self.body.radius]))[0])
-        pieces = np.maximum(np.ceil(way / step).astype(int), 1)
+        pieces = np.maximum(np.ceil(way / longest_step(self.body.radius)).astype(int), 1)
         for part in batches(pieces):
             which, number = numbered(pieces[part])
             row = part.start + which

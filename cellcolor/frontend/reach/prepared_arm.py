@@ -13,12 +13,7 @@ from cellcolor.configurations.matching import CIRCLE
 from cellcolor.data.wording import looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, naming
-from cellcolor.frontend.arm.inverse import (
-    KINEMATICS,
-    InverseKinematics,
-    is_tool_on_last_axis,
-    pose_at_zero,
-)
+from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics, is_tool_on_last_axis
 from cellcolor.frontend.arm.kinematics import Conditioning, conditioning
 from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.newton import stacked
@@ -195,14 +190,13 @@ def _check_last_joint(robot: Robot) -> None:
     """Refuse a last joint that only turns the tool, where its turn is free and it is not locked."""
     task = robot.task
     turns_tool = task.most_joints > task.joints >= robot.joints
-    if turns_tool and not robot.slides[-1] and is_tool_on_last_axis(pose_at_zero(robot)):
+    if turns_tool and not robot.slides[-1] and is_tool_on_last_axis(robot):
         name = robot.joint_names[-1]
-        raise InputError(
-            str(robot.files[0]),
-            f"joint[{name}]",
+        message = (
             "the arm is redundant: this joint only turns the tool about its axis, and that turn is "
-            f"free; fix it ([robot.fixed_joints], as {name} = 0.0) and name a family without it",
+            f"free; fix it ([robot.fixed_joints], as {name} = 0.0) and name a family without it"
         )
+        raise robot.refused(-1, message)
 
 
 def _urdf(named: str, key: str, folder: Path) -> Urdf:

@@ -25,7 +25,6 @@ from cellcolor.frontend.arm.kinematics import (
     forward,
     manipulability,
     signed_task_determinant,
-    tip_jacobian,
 )
 from cellcolor.frontend.arm.newton import polished
 from cellcolor.frontend.arm.robot import Robot
@@ -259,12 +258,11 @@ class Tracker:
         for part in chunks(len(flat)):
             rows = part.start + np.flatnonzero(~np.isnan(flat[part, 0]))
             poses = forward(self._robot, flat[rows])
-            linear, angular = tip_jacobian(poses)
-            own = signed_task_determinant(linear, angular, poses.tool_axis, task)
+            own = signed_task_determinant(poses, task)
             determinants[rows], good[rows] = own, True
             if self._limits is not None:
                 good[rows] = (np.abs(own) >= self._limits.min_task_determinant) & (
-                    manipulability(linear, task) >= self._limits.min_manipulability
+                    manipulability(poses, task) >= self._limits.min_manipulability
                 )
         shape = joints.shape[:-1]
         return Solutions(joints, determinants.reshape(shape), good.reshape(shape))

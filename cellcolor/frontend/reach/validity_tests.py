@@ -27,7 +27,6 @@ from cellcolor.frontend.arm.kinematics import (
     manipulability,
     static_torques,
     task_determinant,
-    tip_jacobian,
 )
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.engine import Contacts, Pair, pairs_of, pairs_with
@@ -88,27 +87,25 @@ class Postures:
     Attributes:
         configurations: (k, joints) in rad, turned into the limits where possible.
         poses: of all joint frames in the world.
-        linear: (k, 3, joints) how the tip moves with the joints, m per rad.
         determinant: (k,) the task determinant, m^3.
-        ends: (bodies, 2, k, 3) the ends of the axes of all bodies, in the world, m.
     """
 
     workplace: Workplace
     configurations: Array
     poses: Poses
-    linear: Array
     determinant: Array
-    ends: Array
 
     @classmethod
     def of(cls, workplace: Workplace, configurations: Array) -> Postures:
         """The arm in configurations (k, joints) in rad."""
         poses = forward(workplace.robot, configurations)
-        linear, angular = tip_jacobian(poses)
-        task = workplace.robot.task
-        determinant = task_determinant(linear, angular, poses.tool_axis, task)
-        ends = body_ends(workplace.robot, poses)
-        return cls(workplace, configurations, poses, linear, determinant, ends)
+        determinant = task_determinant(poses, workplace.robot.task)
+        return cls(workplace, configurations, poses, determinant)
+
+    @cached_property
+    def ends(self) -> Array:
+        """(bodies, 2, k, 3) the ends of the axes of all bodies, in the world, m."""
+        return body_ends(self.workplace.robot, self.poses)
 
     def without(self, failed: Mask) -> Postures:
         """Those that have not failed, (k,)."""
@@ -119,9 +116,7 @@ class Postures:
             self.workplace,
             self.configurations[left],
             self.poses.take(left),
-            self.linear[left],
             self.determinant[left],
-            self.ends[:, :, left],
         )
 
     def __len__(self) -> int:
@@ -187,14 +182,14 @@ def _too_weak(postures: Postures) -> Mask:
     """A joint cannot hold the arm still while the tool presses; what accelerates is not asked."""
     robot, task = postures.workplace.robot, postures.workplace.setup.task
     gravity, push = np.array(task.gravity_m_per_s2), task.normal_force_n
-    torques = static_torques(robot, postures.poses, postures.linear, gravity, push)
+    torques = static_torques(robot, postures.poses, gravity, push)
     return np.asarray(np.any(np.abs(torques) > robot.effort, axis=1))
 
 
 def _hardly_manipulable(postures: Postures) -> Mask:
     """Near a singularity of the tip's position."""
     place = postures.workplace
-    measure = manipulability(postures.linear, place.robot.task)
+    measure = manipulability(postures.poses, place.robot.task)
     return np.asarray(measure < place.arm.conditioning.min_manipulability)
 
 
@@ -356,7 +351,7 @@ class Judge:
             moved[rows] = turned_into_limits(robot, asked[rows])
             postures = Postures.of(self._workplace, moved[rows])
             determinants[rows] = postures.determinant
-            tracked[:, rows] = tracked_points(robot, postures.ends, postures.poses)
+            tracked[:, rows] = tracked_points(robot, postures.poses)
             reasons[rows] = self._first_failures(postures)
         return Verdicts(
             moved.reshape(configurations.shape),

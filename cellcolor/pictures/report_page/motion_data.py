@@ -21,7 +21,6 @@ from cellcolor.frontend.arm.kinematics import (
     forward,
     manipulability,
     task_determinant,
-    tip_jacobian,
 )
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.prepared import PreparedScene
@@ -179,10 +178,9 @@ def _motion(
     """The frames of a trajectory, the arm's kinematics, and what its joints are held to."""
     robot = prepared.robot
     poses = forward(robot, trajectory.joints)
-    linear, angular = tip_jacobian(poses)
     measures = {
-        "determinant": task_determinant(linear, angular, poses.tool_axis, robot.task),
-        "manipulability": manipulability(linear, robot.task),
+        "determinant": task_determinant(poses, robot.task),
+        "manipulability": manipulability(poses, robot.task),
     }
     frames = frames_of(trajectory, np.column_stack([*measures.values()]))
     contact = trajectory.contact[frames]

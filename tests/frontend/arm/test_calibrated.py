@@ -15,7 +15,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.eaik import EaikKinematics
 from cellcolor.frontend.arm.inverse import InverseKinematics
-from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
+from cellcolor.frontend.arm.kinematics import forward, task_determinant
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import BRANCHES, UrKinematics
 
@@ -31,7 +31,7 @@ def family(kinematics: str, text: str) -> tuple[Robot, InverseKinematics]:
 
 def volumes(robot: Robot, q: Array) -> Array:
     poses = forward(robot, q)
-    return task_determinant(*tip_jacobian(poses), poses.tool_axis)
+    return task_determinant(poses)
 
 
 @pytest.mark.parametrize(("kinematics", "name"), ARMS)

@@ -13,7 +13,7 @@ from shipped import SCENES
 from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.contact.obstacle import CylinderObstacle
-from cellcolor.frontend.contact.tip import longest_steps
+from cellcolor.frontend.contact.tip import longest_step
 from cellcolor.frontend.links import (
     remains_valid,
 )
@@ -109,7 +109,7 @@ def test_no_body_moves_far_between_tested_points(name: str) -> None:
             ]
         )
 
-    allowed = longest_steps(np.array([body.radius for body in robot.bodies]))
+    allowed = np.array([longest_step(body.radius) for body in robot.bodies])
     pairs = random.permutation(np.argwhere(valid[edges].all(axis=1)))[:100]
     tested, largest = 0, 0.0
     for row, branch in pairs:

@@ -24,7 +24,7 @@ from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, Scene, build_surface
 from cellcolor.frontend.arm.inverse import InverseKinematics
-from cellcolor.frontend.arm.kinematics import forward, signed_task_determinant, tip_jacobian
+from cellcolor.frontend.arm.kinematics import forward, signed_task_determinant
 from cellcolor.frontend.build import StageClock, build_prepared
 from cellcolor.frontend.prepared import PreparedScene, named, prepare
 from cellcolor.frontend.reach.sheets import Followed
@@ -178,7 +178,7 @@ def test_a_cuspidal_arm_is_refused_with_both_configurations(
         path = follower.along(q, surface.vertices[ends], surface.normals[ends])
         assert path is not None
         poses = forward(robot, path)
-        signs.append(signed_task_determinant(*tip_jacobian(poses), poses.tool_axis))
+        signs.append(signed_task_determinant(poses))
         q = path[-1]
     values = np.concatenate(signs)
     assert wrapped(q - joints[vertex, own[first] % slots]).max() < 1e-6
