@@ -6,7 +6,7 @@ from cellcolor.data.bounds import Bound as Bound
 from cellcolor.data.cells_and_edges import OUTSIDE as OUTSIDE
 from cellcolor.data.cells_and_edges import Cell as Cell
 from cellcolor.data.cells_and_edges import Edge as Edge
-from cellcolor.data.coverage import Coverage as Coverage
+from cellcolor.data.instance import Coverage as Coverage
 from cellcolor.data.instance import Instance as Instance
 from cellcolor.data.plan import ContactPath as ContactPath
 from cellcolor.data.plan import JointPlan as JointPlan

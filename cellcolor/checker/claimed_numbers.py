@@ -11,8 +11,7 @@ from math import isclose
 from cellcolor.checker.certificates import BoundVerdict
 from cellcolor.checker.groups import Groups, regions_of_cells
 from cellcolor.data.bounds import greatest
-from cellcolor.data.coverage import Coverage
-from cellcolor.data.instance import Instance, KnownResult
+from cellcolor.data.instance import Coverage, Instance, KnownResult
 from cellcolor.data.solution import Solution
 from cellcolor.data.wording import count
 

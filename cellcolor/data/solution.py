@@ -21,8 +21,7 @@ from cellcolor.data.bounds import (
     kind_of,
 )
 from cellcolor.data.cells_and_edges import DartName, twin
-from cellcolor.data.coverage import Coverage
-from cellcolor.data.instance import Instance
+from cellcolor.data.instance import Coverage, Instance
 from cellcolor.data.value import Document, Value, adapter_of, read_one_of
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
@@ -396,7 +395,7 @@ def read_schemes(path: str | PathLike[str]) -> Iterator[Division]:
             yield SchemeLine.from_document(body).cells
         except InputError as error:
             field = f"line {number}" + (f", {error.field}" if error.field else "")
-            raise InputError(str(path), field, error.message) from error
+            raise InputError(path, field, error.message) from error
 
 
 def scheme_line(division: Division) -> str:

@@ -14,7 +14,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from cellcolor.arrays import Mask
 from cellcolor.data.cells_and_edges import faults_of_color_names
-from cellcolor.data.coverage import Coverage
+from cellcolor.data.instance import Coverage
 from cellcolor.data.value import (
     Document,
     Drawn,

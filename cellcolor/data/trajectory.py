@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask, stretches
+from cellcolor.arrays import Array, Mask, stretches
 from cellcolor.data.value import (
     Document,
     Integers,
@@ -176,8 +176,10 @@ class Trajectory(WithArrays, Document):
 
 
 _POSE = ("x", "y", "z", "nx", "ny", "nz")
-_STATED = ("repeated", "unplanned", "extra_lift_off")
-_OTHERS = ("time_s", "segment", "contact", *_POSE, *_STATED)
+COLUMNS = ("time_s", "segment", "contact", *_POSE)
+"""Of a table, before those of the joints."""
+STATED = ("repeated", "unplanned", "extra_lift_off")
+"""Columns after them: what the trajectory states of a sample."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,25 +188,27 @@ class TrajectoryTable:
 
     Attributes:
         name: of the file, without its ending.
-        joints: (k, joints) in rad.
-        contact: (k,) whether the tool is on the surface.
-        times: (k,) in s; None without the column.
-        segment: (k,); None without the column.
-        poses: (k, 6) point in m and normal; None without these columns.
-        repeated: (k,) where it runs along an earlier pass on purpose.
-        unplanned: (k,) where the move to the next sample was not planned.
-        extra_lift_off: (k,) the last sample in contact before a lift-off beyond the minimum.
+        columns: (k,) the numbers of each column that the table has.
     """
 
     name: str
-    joints: Array
-    contact: Mask
-    times: Array | None
-    segment: Index | None
-    poses: Array | None
-    repeated: Mask
-    unplanned: Mask
-    extra_lift_off: Mask
+    columns: dict[str, Array]
+
+    @property
+    def joints(self) -> Array:
+        """(k, joints) in rad."""
+        joints = sum(column.startswith("q") for column in self.columns)
+        return np.column_stack([self.columns[f"q{k + 1}"] for k in range(joints)])
+
+    @property
+    def poses(self) -> Array | None:
+        """(k, 6) point in m and normal; None without these columns."""
+        has = "x" in self.columns
+        return np.column_stack([self.columns[title] for title in _POSE]) if has else None
+
+    def marked(self, title: str) -> Mask:
+        """Where (k,) a column is 1; nowhere without it."""
+        return self.columns.get(title, np.zeros(len(self.columns["contact"]))) == 1
 
 
 def read_trajectory_csv(path: str | PathLike[str]) -> TrajectoryTable:
@@ -222,7 +226,7 @@ def _parsed(name: str, text: str) -> TrajectoryTable:
     reader = csv.reader(StringIO(text.removeprefix("\ufeff"), newline=""), strict=True)
     try:
         columns = [cell.strip() for cell in next(reader, [])]
-        joints = _checked(columns)
+        _check_header(columns)
         rows = []
         for cells in reader:
             if not cells:  # an empty line
@@ -238,31 +242,17 @@ def _parsed(name: str, text: str) -> TrajectoryTable:
     except csv.Error as error:
         raise InputError(None, f"line {reader.line_num}", f"is not CSV: {error}") from error
     table = np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
-    place = {column: k for k, column in enumerate(columns)}
-    return TrajectoryTable(
-        name=name,
-        joints=table[:, [place[joint] for joint in joints]],
-        contact=table[:, place["contact"]] == 1,
-        times=table[:, place["time_s"]] if "time_s" in place else None,
-        segment=table[:, place["segment"]].astype(np.int64) if "segment" in place else None,
-        poses=table[:, [place[title] for title in _POSE]] if "x" in place else None,
-        **{
-            title: table[:, place[title]] == 1
-            if title in place
-            else np.zeros(len(rows), dtype=bool)
-            for title in _STATED
-        },
-    )
+    return TrajectoryTable(name, dict(zip(columns, table.T, strict=True)))
 
 
-def _checked(columns: list[str]) -> list[str]:
-    """The columns of the joints, base first, of a header that is as it has to be."""
+def _check_header(columns: list[str]) -> None:
+    """Refuse columns that are not as they have to be."""
     for number, column in enumerate(columns, start=1):
         field = f"line 1, column {number}"
         if column in columns[: number - 1]:
             raise InputError(None, field, f"{column!r} appears twice")
-        if column not in _OTHERS and not re.fullmatch(r"q[1-9][0-9]?", column):
-            known = ", ".join((*_OTHERS, "q1", "q2", "…"))
+        if column not in (*COLUMNS, *STATED) and not re.fullmatch(r"q[1-9][0-9]?", column):
+            known = ", ".join((*COLUMNS, *STATED, "q1", "q2", "…"))
             raise InputError(None, field, f"{column!r} is not a known column: {known}")
     joints = [f"q{k}" for k in range(1, 1 + sum(column.startswith("q") for column in columns))]
     needed = ["contact", *(joints or ["q1"])]
@@ -271,7 +261,6 @@ def _checked(columns: list[str]) -> list[str]:
     missing = [column for column in needed if column not in columns]
     if missing:
         raise InputError(None, "line 1", f"there is no column {missing[0]}")
-    return joints
 
 
 def _number(cell: str, field: str) -> float:
@@ -286,7 +275,7 @@ def _number(cell: str, field: str) -> float:
 
 def _check_kinds(columns: list[str], row: list[float], line: str) -> None:
     for column, number in zip(columns, row, strict=True):
-        if column in ("contact", *_STATED) and number not in (0, 1):
+        if column in ("contact", *STATED) and number not in (0, 1):
             raise InputError(None, f"{line}, column {column}", f"must be 0 or 1, is {number:g}")
         if column == "segment" and (number != int(number) or abs(number) > 2**53):
             raise InputError(None, f"{line}, column segment", f"must be an integer, is {number:g}")

@@ -124,7 +124,7 @@ def judge_trajectory(
         from cellcolor.trajectory_checker.stated import completed
 
     report = progress or (lambda _: None)
-    timed = isinstance(given, Trajectory) or given.times is not None
+    timed = isinstance(given, Trajectory) or "time_s" in given.columns
     silent = isinstance(given, TrajectoryTable)
     if isinstance(given, TrajectoryTable):
         given = completed(given, built.robot, deadline)

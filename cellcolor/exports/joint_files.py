@@ -15,14 +15,12 @@ import re
 
 import numpy as np
 
+from cellcolor.data.trajectory import COLUMNS, STATED
 from cellcolor.exports.interface import PlannedMotion, Samples, stretches
 from cellcolor.files.writing import FileKind
 
-_COLUMNS = ("time_s", "segment", "contact", "x", "y", "z", "nx", "ny", "nz")
-_STATED = ("repeated", "unplanned", "extra_lift_off")
-
 TABLE = FileKind(
-    "a table of joints written by cellcolor", re.compile(re.escape(",".join(_COLUMNS)).encode())
+    "a table of joints written by cellcolor", re.compile(re.escape(",".join(COLUMNS)).encode())
 )
 
 
@@ -36,8 +34,8 @@ def joints_csv(planned: PlannedMotion) -> bytes:
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
     joints = len(trajectory.joint_names)
-    writer.writerow([*_COLUMNS, *(f"q{number + 1}" for number in range(joints)), *_STATED])
-    stated = np.zeros((len(trajectory.times), len(_STATED)), dtype=int)
+    writer.writerow([*COLUMNS, *(f"q{number + 1}" for number in range(joints)), *STATED])
+    stated = np.zeros((len(trajectory.times), len(STATED)), dtype=int)
     for stretch in trajectory.repeated:
         stated[stretch.sample : stretch.last_sample + 1, 0] = 1
     stated[list(trajectory.unplanned), 1] = 1

@@ -237,12 +237,11 @@ def _plane(axes: Axes, picture: Picture2D) -> None:
         axes.text(x, y, text, fontsize=size, ha="center", va="center", zorder=3)
 
 
-_TOO_LITTLE = "covers too little"
 _MARKS: dict[str, dict[str, Any]] = {
     "where it stands": {"marker": "+", "color": INK, "s": 120},
     "among the best": {"facecolors": "none", "edgecolors": INK, "s": 110},
     "the part cannot stand there": {"marker": "x", "color": GREY, "s": 16},
-    _TOO_LITTLE: {"marker": ".", "color": GREY, "s": 24},
+    "covers too little": {"marker": ".", "color": GREY, "s": 24},
     "no answer in time": {"marker": "1", "color": GREY, "s": 24},
 }
 
@@ -286,20 +285,18 @@ def render_placements(found: Placements, kind: str) -> bytes:
 
 def _styles(row: PlacedMinimum, found: Placements) -> list[tuple[str, dict[str, Any]]]:
     """What is drawn for a placement, each with its label in the legend."""
-    rings = [
-        (label, _MARKS[label])
-        for label, rings in (
-            ("where it stands", row is found.here),
-            ("among the best", row in found.best),
-        )
-        if rings
-    ]
-    lift_offs = row.least_lift_offs
+    lift_offs, marks = row.least_lift_offs, []
+    if row is found.here:
+        marks.append("where it stands")
+    if row in found.best:
+        marks.append("among the best")
     if lift_offs is None:
-        label = "the part cannot stand there" if row.refused else "no answer in time"
-        return [*rings, (label, _MARKS[label])]
-    if row.rank(found.cover)[0]:
-        return [*rings, (_TOO_LITTLE, _MARKS[_TOO_LITTLE])]
-    color = LINES[lift_offs % len(LINES)]
-    dot = {"facecolors": "none" if row.at_least else color, "edgecolors": color, "s": 40}
-    return [*rings, (f"{'at least ' if row.at_least else ''}{count(lift_offs, 'lift-off')}", dot)]
+        marks.append("the part cannot stand there" if row.refused else "no answer in time")
+    elif row.rank(found.cover)[0]:
+        marks.append("covers too little")
+    else:
+        color = LINES[lift_offs % len(LINES)]
+        dot = {"facecolors": "none" if row.at_least else color, "edgecolors": color, "s": 40}
+        name = f"{'at least ' if row.at_least else ''}{count(lift_offs, 'lift-off')}"
+        return [*((label, _MARKS[label]) for label in marks), (name, dot)]
+    return [(label, _MARKS[label]) for label in marks]

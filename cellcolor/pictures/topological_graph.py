@@ -6,8 +6,6 @@ counter-clockwise as seen from outside the object.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import networkx as nx
 import numpy as np
 
@@ -23,6 +21,8 @@ _SAMPLES = 33
 
 _Text = tuple[str, Array, float]
 """A text, its place (2,), and its size in points."""
+_Ring = list[tuple[int | None, Array]]
+"""The darts around a cell, None between two loops, each with its direction (2,) from the center."""
 
 
 def draw_graph(graph: Instance) -> Picture2D:
@@ -32,24 +32,21 @@ def draw_graph(graph: Instance) -> Picture2D:
     low, high = (centers - radii[:, None], centers + radii[:, None]) if len(radii) else ([], [])
     extent = float((np.max(high, axis=0) - np.min(low, axis=0)).max()) if len(radii) else 1.0
     unit = extent / _POINTS_WIDE  # one point of the printed picture
-    angles: dict[int, float] = {}
-    owner: dict[int, int] = {}
-    for cell in graph.cells:
-        angles |= _ring(graph, cell.id, centers)
-        owner |= {dart: cell.id for loop in cell.loops for dart in loop}
-
-    def port(dart: int) -> tuple[Array, Array]:
-        direction = _direction(angles[dart])
-        return centers[owner[dart]] + radii[owner[dart]] * direction, direction
+    rings = [_ring(graph, cell, centers) for cell in graph.cells]
+    ways = {dart: way for ring in rings for dart, way in ring if dart is not None}
 
     lines: list[PlaneLine] = []
     texts: list[_Text] = []
     for edge in graph.edges:
-        sides = [dart for dart in (edge.id, -edge.id) if dart in owner]
-        start, out = port(sides[0])
+        sides = [
+            (centers[cell] + radii[cell] * ways[dart], ways[dart])
+            for dart, cell in ((edge.id, edge.left), (-edge.id, edge.right))
+            if cell != OUTSIDE
+        ]
+        start, out = sides[0]
         path = np.array([start, start + 0.3 * out])  # the end of an edge to the outside
         if len(sides) == 2:
-            path = _path(start, out, *port(sides[1]))
+            path = _path(start, out, *sides[1])
         colors = graph.joinable(edge.id)
         if not colors:
             lines.append(PlaneLine(_DEAD, "#777777", path, 1.0, dashed=True))
@@ -61,8 +58,8 @@ def draw_graph(graph: Instance) -> Picture2D:
             texts.append((",".join(map(str, colors)), path[len(path) // 2], 6.0))
 
     outlines: list[Outline] = []
-    for cell in graph.cells:
-        shapes, numbers = _node(cell, centers[cell.id], float(radii[cell.id]), angles, unit)
+    for cell, ring in zip(graph.cells, rings, strict=True):
+        shapes, numbers = _node(cell, centers[cell.id], float(radii[cell.id]), ring, unit)
         outlines += shapes
         texts += numbers
     # The legend has the colors in their order, dead edges last.
@@ -82,14 +79,14 @@ def draw_graph(graph: Instance) -> Picture2D:
 
 
 def _node(
-    cell: Cell, center: Array, radius: float, angles: Mapping[int, float], unit: float
+    cell: Cell, center: Array, radius: float, ring: _Ring, unit: float
 ) -> tuple[list[Outline], list[_Text]]:
     """A cell: a disc with its colors on the rim, its number, and its darts around that.
 
     Args:
         center: (2,) of the disc.
         radius: of the disc.
-        angles: where each dart stands, rad.
+        ring: what stands around it.
         unit: one point of the printed picture.
     """
     shapes = []
@@ -98,18 +95,14 @@ def _node(
         wedge = _arc(center, radius, start, end, hub=len(cell.colors) > 1)
         shapes.append(Outline(PAINTS[color % len(PAINTS)], wedge))
     shapes.append(Outline("#FFFFFF", _arc(center, 0.86 * radius, 0.0, 2 * np.pi, hub=False)))
-    if len(cell.loops) > 1:
-        shapes += [
-            Outline(INK, center + radius * np.array([[0.45], [0.86]]) * _direction(at))
-            for at in _gaps(cell.loops, angles)
-        ]
     texts: list[_Text] = [(str(cell.id), center, min(11.0, 0.45 * radius / unit))]
     darts = sum(map(len, cell.loops))
     size = min(7.0, 2.0 * radius / unit / max(darts, 6))
-    for loop in cell.loops:
-        for dart in loop:
-            at = center + 0.7 * radius * _direction(angles[dart])
-            texts.append((f"{dart:+d}", at, round(float(size), 2)))
+    for dart, way in ring:
+        if dart is None:
+            shapes.append(Outline(INK, center + radius * np.array([[0.45], [0.86]]) * way))
+        else:
+            texts.append((f"{dart:+d}", center + 0.7 * radius * way, round(float(size), 2)))
     return shapes, texts
 
 
@@ -140,32 +133,19 @@ def _layout(instance: Instance, radii: Array) -> Array:
     return np.asarray(centers)
 
 
-def _ring(instance: Instance, cell: int, centers: Array) -> dict[int, float]:
-    """The angle of each of a cell's darts: loop by loop, turned towards where they lead."""
-    loops = instance.cells[cell].loops
-    # A gap as wide as a dart's place between loops.
-    count = sum(map(len, loops)) + (len(loops) if len(loops) > 1 else 0)
-    slots: dict[int, float] = {}
-    slot = 0
-    for loop in loops:
-        for dart in loop:
-            slots[dart] = 2 * np.pi * slot / count
-            slot += 1
-        slot += 1
+def _ring(instance: Instance, cell: Cell, centers: Array) -> _Ring:
+    """Loop by loop the directions of a cell's darts, turned towards where they lead."""
+    gap = [None] if len(cell.loops) > 1 else []
+    places = [dart for loop in cell.loops for dart in (*loop, *gap)]
+    angles = 2 * np.pi * np.arange(len(places)) / max(len(places), 1)
     pull = 0j
-    for dart, angle in slots.items():
-        other = instance.across(dart)
-        if other not in (OUTSIDE, cell):
-            x, y = centers[other] - centers[cell]
+    for dart, angle in zip(places, angles, strict=True):
+        other = OUTSIDE if dart is None else instance.across(dart)
+        if other not in (OUTSIDE, cell.id):
+            x, y = centers[other] - centers[cell.id]
             pull += complex(x, y) / abs(complex(x, y)) * np.exp(-1j * angle)
     turn = float(np.angle(pull)) if abs(pull) > 1e-9 else 0.0
-    return {dart: angle + turn for dart, angle in slots.items()}
-
-
-def _gaps(loops: tuple[tuple[int, ...], ...], angles: Mapping[int, float]) -> list[float]:
-    """The middle of the gap after each loop."""
-    step = 2 * np.pi / (sum(map(len, loops)) + len(loops))
-    return [angles[loop[-1]] + step for loop in loops]
+    return [(dart, _direction(at + turn)) for dart, at in zip(places, angles, strict=True)]
 
 
 def _direction(angle: float) -> Array:

@@ -41,64 +41,6 @@ from cellcolor.solvers.interface import Options
 
 _SLACK = 1e-6  # of a bound in floating point
 _LONGEST = 10.0  # s for one bound; the best one known by then is a bound as well
-
-
-def bounds_of(prepared: PreparedScene, cover: float, deadline: Deadline) -> tuple[float, int]:
-    """The share that is covered at most, and the segments that are needed at least to cover enough.
-
-    Args:
-        cover: the share of the surface that is enough. Where less can be covered, no links are
-            computed, and the second number is 1.
-
-    Raises:
-        OutOfTime: the deadline came first.
-    """
-    verdicts = judged_at_vertices(prepared, StageClock(deadline, None))
-    areas = prepared.surface.mesh.vertex_areas
-    valid, edges = verdicts.valid, prepared.surface.mesh.edges
-    # Added up as a whole build adds: what is the same must not differ by rounding.
-    most = float(areas[valid.any(axis=1)].sum() / areas.sum())
-    if most < cover - SAME_SHARE or not most:
-        return most, 1
-    region = regions(valid, edges, continuous_along(prepared, edges, verdicts, deadline))
-    # Slivers are given up, and what a tolerance refuses is not covered either: nobody knows yet
-    # which. Without both all that is valid has to be covered.
-    whole = prepared.setup.slivers is None and prepared.scene.tolerance is None
-    return most, _fewest(region, valid, areas / areas.sum(), most if whole else cover, deadline)
-
-
-def _fewest(region: Index, valid: Mask, weights: Array, cover: float, deadline: Deadline) -> int:
-    """How many regions cover a share at least.
-
-    Args:
-        region: (n, branches) the number of each candidate's region.
-        valid: (n, branches) the candidates that count.
-        weights: (n,) of the vertices, of sum 1.
-    """
-    vertices, branches = np.nonzero(valid)
-    names, column = np.unique(region[vertices, branches], return_inverse=True)
-    member = np.zeros((len(weights), len(names)), dtype=bool)
-    member[vertices, column] = True
-    places, own = np.unique(member, axis=0, return_inverse=True)
-    area = np.bincount(own.ravel(), weights)
-    # A place counts as far as regions that have it are chosen.
-    chosen = hstack([csr_array(places, dtype=float), -identity(len(places))])
-    enough = np.concatenate([np.zeros(len(names)), area])
-    price = np.concatenate([np.ones(len(names)), np.zeros(len(places))])
-    found = milp(
-        price,
-        integrality=price,
-        bounds=Bounds(0, 1),
-        constraints=[
-            LinearConstraint(chosen, 0, np.inf),
-            LinearConstraint(enough, cover - SAME_SHARE, np.inf),
-        ],
-        options={"time_limit": min(deadline.left, _LONGEST)},
-    )
-    bound = found.mip_dual_bound
-    return 1 if bound is None or not np.isfinite(bound) else max(1, ceil(bound - _SLACK))
-
-
 _NOTHING = "the arm reaches nothing of it"
 _FINE_ENOUGH = 1.5  # times the vertices that are wanted; a mesh up to there is not made coarser
 
@@ -110,7 +52,13 @@ def pose_of(placement: Placement) -> Pose:
 
 def spread(ranges: Ranges, start: Pose, count: int, seed: int) -> list[Pose]:
     """Placements all over the ranges; a scrambled Sobol sequence."""
-    return _scaled(ranges, start, _sobol(len(ranges), count, seed))
+    # Sobol's balance is one of powers of two: the points after the last one are left out.
+    whole = int(np.ceil(np.log2(max(count, 1))))
+    points = qmc.Sobol(len(ranges), seed=seed).random_base2(whole)[:count]
+    poses = np.tile(np.array(start), (len(points), 1))
+    for column, (name, (low, high)) in enumerate(ranges.items()):
+        poses[:, VARIABLES.index(name)] = low + (high - low) * points[:, column]
+    return [tuple(pose) for pose in poses.tolist()]
 
 
 def around(ranges: Ranges, best: Pose, share: float, count: int, seed: int) -> list[Pose]:
@@ -119,7 +67,7 @@ def around(ranges: Ranges, best: Pose, share: float, count: int, seed: int) -> l
     for name, (low, high) in ranges.items():
         middle, half = best[VARIABLES.index(name)], share * (high - low) / 2
         near[name] = (max(low, middle - half), min(high, middle + half))
-    return _scaled(near, best, _sobol(len(ranges), count, seed))
+    return spread(near, best, count, seed)
 
 
 def is_inside(ranges: Ranges, pose: Pose) -> bool:
@@ -134,20 +82,6 @@ def distance(ranges: Ranges, first: Pose, second: Pose) -> float:
         for name, (low, high) in ranges.items()
         for at in [VARIABLES.index(name)]
     )
-
-
-def _sobol(dimensions: int, count: int, seed: int) -> Array:
-    # Sobol's balance is one of powers of two: the points after the last one are left out.
-    whole = int(np.ceil(np.log2(max(count, 1))))
-    points: Array = qmc.Sobol(dimensions, seed=seed).random_base2(whole)
-    return points[:count]
-
-
-def _scaled(ranges: Ranges, start: Pose, points: Array) -> list[Pose]:
-    poses = np.tile(np.array(start), (len(points), 1))
-    for column, (name, (low, high)) in enumerate(ranges.items()):
-        poses[:, VARIABLES.index(name)] = low + (high - low) * points[:, column]
-    return [tuple(pose) for pose in poses.tolist()]
 
 
 def coarse_scene(scene: Scene, vertices: int, deadline: Deadline) -> Scene:
@@ -246,11 +180,26 @@ def stands_in(prepared: PreparedScene) -> str | None:
 
 
 def _bounds(prepared: PreparedScene, pose: Pose, cover: float, deadline: Deadline) -> PlacedMinimum:
-    share, at_least = bounds_of(prepared, cover, deadline)
-    count = len(prepared.surface.vertices)
-    if not share:
+    """The share that is covered at most, and the segments that covering enough takes at least.
+
+    Where less can be covered no links are computed, and the second number is 1.
+    """
+    verdicts = judged_at_vertices(prepared, StageClock(deadline, None))
+    areas, edges = prepared.surface.mesh.vertex_areas, prepared.surface.mesh.edges
+    valid, count = verdicts.valid, len(areas)
+    # Added up as a whole build adds: what is the same must not differ by rounding.
+    most = float(areas[valid.any(axis=1)].sum() / areas.sum())
+    if not most:
         return PlacedMinimum(pose, None, 0.0, False, count, _NOTHING)
-    return PlacedMinimum(pose, None, share, False, count, at_least=at_least)
+    at_least = 1
+    if most >= cover - SAME_SHARE:
+        region = regions(valid, edges, continuous_along(prepared, edges, verdicts, deadline))
+        # Slivers are given up, and what a tolerance refuses is not covered either: nobody knows yet
+        # which. Without both all that is valid has to be covered.
+        whole = prepared.setup.slivers is None and prepared.scene.tolerance is None
+        weights = areas / areas.sum()
+        at_least = _fewest(region, valid, weights, most if whole else cover, deadline)
+    return PlacedMinimum(pose, None, most, False, count, at_least=at_least)
 
 
 def _minimum(prepared: PreparedScene, pose: Pose, options: Options) -> PlacedMinimum:
@@ -264,3 +213,35 @@ def _minimum(prepared: PreparedScene, pose: Pose, options: Options) -> PlacedMin
         return PlacedMinimum(pose, None, 0.0, False, count, _NOTHING)
     solution = checked.solve(instance, options)
     return PlacedMinimum(pose, solution.segments, share, solution.proved_for_surface, count)
+
+
+def _fewest(region: Index, valid: Mask, weights: Array, cover: float, deadline: Deadline) -> int:
+    """How many regions cover a share at least.
+
+    Args:
+        region: (n, branches) the number of each candidate's region.
+        valid: (n, branches) the candidates that count.
+        weights: (n,) of the vertices, of sum 1.
+    """
+    vertices, branches = np.nonzero(valid)
+    names, column = np.unique(region[vertices, branches], return_inverse=True)
+    member = np.zeros((len(weights), len(names)), dtype=bool)
+    member[vertices, column] = True
+    places, own = np.unique(member, axis=0, return_inverse=True)
+    area = np.bincount(own.ravel(), weights)
+    # A place counts as far as regions that have it are chosen.
+    chosen = hstack([csr_array(places, dtype=float), -identity(len(places))])
+    enough = np.concatenate([np.zeros(len(names)), area])
+    price = np.concatenate([np.ones(len(names)), np.zeros(len(places))])
+    found = milp(
+        price,
+        integrality=price,
+        bounds=Bounds(0, 1),
+        constraints=[
+            LinearConstraint(chosen, 0, np.inf),
+            LinearConstraint(enough, cover - SAME_SHARE, np.inf),
+        ],
+        options={"time_limit": min(deadline.left, _LONGEST)},
+    )
+    bound = found.mip_dual_bound
+    return 1 if bound is None or not np.isfinite(bound) else max(1, ceil(bound - _SLACK))

@@ -8,8 +8,6 @@ It needs the extra ``peers``.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib.metadata import version
-from importlib.util import find_spec
 from math import comb
 from typing import TYPE_CHECKING
 
@@ -17,10 +15,11 @@ from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import ModelSize
 from cellcolor.deadline import OutOfTime
-from cellcolor.errors import SolverMissing, TooLarge
+from cellcolor.errors import TooLarge
 from cellcolor.files.writing import shipped_folder
-from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
+from cellcolor.solvers.interface import Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains, only_loops
+from cellcolor.solvers.peers import Peer
 
 if TYPE_CHECKING:
     from clingo import Model, Symbol
@@ -40,22 +39,10 @@ _HEARD_AFTER = 0.1
 """Seconds between two looks at the deadline; Python handles a signal (Ctrl-C) only then."""
 
 
-class ClingoSolver:
-    """Fewest segments in the search space ``paper``, for cells with one live loop each.
+class ClingoSolver(Peer):
+    """clingo in this process, since it can be interrupted."""
 
-    A live loop is a border loop with edges that can be joined.
-    """
-
-    abilities = Abilities()
-
-    def __init__(self) -> None:
-        if find_spec("clingo") is None:
-            raise SolverMissing("clingo", "pip install 'fewest-lift-offs[peers]'")
-
-    @property
-    def version(self) -> str:
-        """The version of clingo."""
-        return f"clingo {version('clingo')}"
+    name, package, module, called = "clingo", "clingo", "clingo", "clingo"
 
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None

@@ -11,12 +11,14 @@ from cellcolor.arrays import Array, Index, stretches, unit
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
 from cellcolor.tool_paths.contour import EVENED, FINEST
-from cellcolor.tool_paths.level_lines import Row, level_lines, slice_along
 from cellcolor.tool_paths.registry import Laid
 from cellcolor.tool_paths.triangles import (
+    Row,
     Triangles,
     evened,
+    level_lines,
     off_border,
+    slice_along,
     ways_from,
     with_room_inside,
 )

@@ -8,9 +8,15 @@ from cellcolor.arrays import Array, Index
 from cellcolor.deadline import Deadline
 from cellcolor.mesh.triangle_mesh import grouped
 from cellcolor.tool_paths.joined_loops import join_loops
-from cellcolor.tool_paths.level_lines import Sliced, level_lines, slice_along
 from cellcolor.tool_paths.registry import Laid
-from cellcolor.tool_paths.triangles import Triangles, evened, with_room_inside
+from cellcolor.tool_paths.triangles import (
+    Sliced,
+    Triangles,
+    evened,
+    level_lines,
+    slice_along,
+    with_room_inside,
+)
 
 FINEST = 0.5
 """Longest edge of the meshes that level lines are drawn on, in spacings."""

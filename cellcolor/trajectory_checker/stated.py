@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.arrays import Array, stretches, unit
+from cellcolor.arrays import Array, stretch_of, stretches, unit
 from cellcolor.data.trajectory import ExtraLiftOff, RepeatedStretch, Trajectory, TrajectoryTable
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.trajectory_checker.dense import angles, poses_of, strokes_of
+from cellcolor.trajectory_checker.dense import angles, poses_of
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import POSE_ANGLE, POSE_DISTANCE
 
@@ -86,31 +86,33 @@ def completed(table: TrajectoryTable, robot: Robot, deadline: Deadline = NEVER) 
     Raises:
         InputError: it has another number of joints.
     """
-    joints, count = table.joints, len(table.joints)
+    joints, poses, columns = table.joints, table.poses, table.columns
+    contact = table.marked("contact")
     if joints.shape[1] != robot.joints:
         message = f"there are {joints.shape[1]} joints, the arm has {robot.joints}"
         raise InputError(None, "line 1", message)
-    if table.poses is None:
+    if poses is None:
         points, axes = poses_of(robot, joints, deadline)
         normals = -axes
     else:
-        points, normals = table.poses[:, :3], table.poses[:, 3:]
-    segment = strokes_of(table.contact) if table.segment is None else table.segment
+        points, normals = poses[:, :3], poses[:, 3:]
+    segment = columns.get("segment", stretch_of(contact)).astype(np.int64)
     return Trajectory(
         name=table.name,
         joint_names=robot.joint_names,
-        times=np.arange(count, dtype=np.float64) if table.times is None else table.times,
+        times=columns.get("time_s", np.arange(len(joints), dtype=np.float64)),
         joints=joints,
         points=points,
         normals=normals,
-        contact=table.contact,
+        contact=contact,
         segment=segment,
-        unplanned=tuple(np.flatnonzero(table.unplanned).tolist()),
+        unplanned=tuple(np.flatnonzero(table.marked("unplanned")).tolist()),
         extra_lift_offs=tuple(
             ExtraLiftOff(k, int(segment[k]), _REASON, _REASON, tuple(points[k].tolist()))
-            for k in np.flatnonzero(table.extra_lift_off).tolist()
+            for k in np.flatnonzero(table.marked("extra_lift_off")).tolist()
         ),
         repeated=tuple(
-            RepeatedStretch(first, after - 1, _REASON) for first, after in stretches(table.repeated)
+            RepeatedStretch(first, after - 1, _REASON)
+            for first, after in stretches(table.marked("repeated"))
         ),
     )

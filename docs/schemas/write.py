@@ -20,7 +20,6 @@ from pydantic.json_schema import GenerateJsonSchema
 
 from cellcolor.data import (
     bounds,
-    coverage,
     instance,
     library_index,
     plan,
@@ -38,7 +37,6 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 MODULES = (
     bounds,
-    coverage,
     instance,
     library_index,
     plan,

@@ -21,8 +21,7 @@ from cellcolor.checker.claimed_numbers import claims, segments_of_whole_cells
 from cellcolor.checker.division import check_solution
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell
-from cellcolor.data.coverage import Coverage
-from cellcolor.data.instance import Instance
+from cellcolor.data.instance import Coverage, Instance
 from cellcolor.data.solution import (
     InstanceReference,
     Seam,

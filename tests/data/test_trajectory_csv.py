@@ -48,10 +48,10 @@ def test_what_is_written_is_read(
 
     assert table.name == "mine"
     assert table.joints.tolist() == written(*joints)
-    assert table.contact.tolist() == [row["contact"] == 1 for row in rows]
+    assert table.marked("contact").tolist() == [row["contact"] == 1 for row in rows]
     for found, names in (
-        (table.times, ["time_s"]),
-        (table.segment, ["segment"]),
+        (table.columns.get("time_s"), ["time_s"]),
+        (table.columns.get("segment"), ["segment"]),
         (table.poses, ["x", "y", "z", "nx", "ny", "nz"]),
     ):
         if names[0] not in columns:

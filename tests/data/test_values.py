@@ -18,8 +18,7 @@ from meshes import surfaces
 
 from cellcolor.data.bounds import KINDS, Bound
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
-from cellcolor.data.coverage import Coverage
-from cellcolor.data.instance import Instance
+from cellcolor.data.instance import Coverage, Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import ModelSize, Solution
 from cellcolor.data.surface import Crack, LabelledSurface

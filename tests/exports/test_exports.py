@@ -35,9 +35,9 @@ def test_the_judge_reads_the_table_of_joints(planned: PlannedMotion, tmp_path: P
     (tmp_path / "joints.csv").write_bytes(content("joints.csv", planned))
     table, trajectory = read_trajectory_csv(tmp_path / "joints.csv"), planned.trajectory
     assert np.allclose(table.joints, trajectory.joints, atol=1e-9)
-    assert np.allclose(table.times, trajectory.times, atol=1e-9)
-    assert np.array_equal(table.contact, trajectory.contact)
-    assert np.array_equal(table.segment, trajectory.segment)
+    assert np.allclose(table.columns["time_s"], trajectory.times, atol=1e-9)
+    assert np.array_equal(table.marked("contact"), trajectory.contact)
+    assert np.array_equal(table.columns["segment"], trajectory.segment)
 
 
 def test_a_message_ends_where_a_move_was_not_planned(planned: PlannedMotion) -> None:

@@ -19,8 +19,7 @@ from meshes import surfaces
 
 from cellcolor.checker.claimed_numbers import claims
 from cellcolor.checker.division import check_solution
-from cellcolor.data.coverage import Coverage
-from cellcolor.data.instance import Instance, KnownResult, KnownResults, SurfaceReference
+from cellcolor.data.instance import Coverage, Instance, KnownResult, KnownResults, SurfaceReference
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose

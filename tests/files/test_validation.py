@@ -21,8 +21,7 @@ import cellcolor
 from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell, Edge
-from cellcolor.data.coverage import Coverage
-from cellcolor.data.instance import Instance, KnownResult, KnownResults, SurfaceReference
+from cellcolor.data.instance import Coverage, Instance, KnownResult, KnownResults, SurfaceReference
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import (
     Seam,

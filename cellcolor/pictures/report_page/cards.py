@@ -205,34 +205,31 @@ def _segments(report: MotionReport) -> Card | None:
     trajectory, painted = report.trajectory, report.painted
     if painted is None:
         return None
-    rows = []
-    areas = painted.surface.vertex_areas
-    for segment in range(int(painted.segment_of.max(initial=-1)) + 1):
-        vertices = np.flatnonzero(painted.segment_of == segment)
-        color = painted.plan.vertex_colors[int(vertices[0])] if len(vertices) else None
-        rows.append(
-            (
-                str(segment),
-                "–" if color is None else painted.surface.colors[color],
-                f"{1e4 * float(areas[vertices].sum()):.0f} cm²",
-            )
-        )
-    solution = report.solution
-    preference = None if solution is None else solution.preference
+    names, segment_of = painted.surface.colors, painted.segment_of
+    color_of = dict(zip(segment_of.tolist(), painted.plan.vertex_colors, strict=True))
+    # Shifted by one, so that what has no segment is counted first, and left out.
+    areas = np.bincount(segment_of + 1, painted.surface.vertex_areas)[1:]
+    rows: list[tuple[str, ...]] = []
+    for number, area in enumerate(areas.tolist()):
+        color = color_of.get(number)
+        rows.append((str(number), "–" if color is None else names[color], f"{1e4 * area:.0f} cm²"))
+    preference = None if report.solution is None else report.solution.preference
     texts = () if preference is None else (f"Posture: {preference}.",)
     if trajectory is None:
         return Card("Segments", texts, (("", "color", "area"), *rows))
     steps = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1)
     spent = np.diff(trajectory.times)
     touching = trajectory.contact[1:] & trajectory.contact[:-1]
-    driven = []
-    for segment in range(len(rows)):
-        own = touching & (trajectory.segment[1:] == segment)
-        driven.append((f"{float(steps[own].sum()):.2f} m", f"{float(spent[own].sum()):.1f} s"))
-    between = float(spent[~touching].sum())
+    for number, row in enumerate(rows):
+        own = touching & (trajectory.segment[1:] == number)
+        rows[number] = (
+            *row,
+            f"{float(steps[own].sum()):.2f} m",
+            f"{float(spent[own].sum()):.1f} s",
+        )
+    between = spent[~touching].sum()
     text = f"Moves between strokes, approaches and retracts take {between:.1f} s."
-    table = [row + more for row, more in zip(rows, driven, strict=True)]
-    return Card("Segments", (*texts, text), (("", "color", "area", "path", "in contact"), *table))
+    return Card("Segments", (*texts, text), (("", "color", "area", "path", "in contact"), *rows))
 
 
 def _reach(report: MotionReport) -> Card:
