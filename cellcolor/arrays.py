@@ -50,6 +50,12 @@ def stretches(of: Mask) -> list[tuple[int, int]]:
     return list(zip(begins, ends, strict=True))
 
 
+def stretch_of(of: Mask) -> Index:
+    """The number (k,) of the stretch of neighbors that are true, -1 where they are not."""
+    begins = of & ~np.concatenate([[False], of[:-1]])
+    return np.where(of, np.cumsum(begins) - 1, -1)
+
+
 def to_nearest(places: Array, fixed: Array) -> Array:
     """How far places (k,) on a line are from the nearest of others, ascending and at least one."""
     after = np.searchsorted(fixed, places)

@@ -29,11 +29,11 @@ class InputError(CellcolorError):
         message: what is wrong with it, one line.
     """
 
-    def __init__(self, file: str | None, field: str | None, message: str) -> None:
-        self.file = file
+    def __init__(self, file: str | PathLike[str] | None, field: str | None, message: str) -> None:
+        self.file = None if file is None else str(file)
         self.field = field
         self.message = " ".join(message.split())
-        super().__init__(": ".join(part for part in (file, field, self.message) if part))
+        super().__init__(": ".join(part for part in (self.file, field, self.message) if part))
 
     def in_file(self, file: str) -> InputError:
         """The same error with the file named, for data that learns its file late."""

@@ -86,9 +86,9 @@ class CandidateTable(WithArrays):
         except OSError as error:
             reason = error.strerror or "cannot be read"
             message = f"{reason}; build the scene again or give it"
-            raise InputError(str(side), None, message) from error
+            raise InputError(side, None, message) from error
         except (KeyError, ValueError, EOFError, AttributeError, zipfile.BadZipFile) as error:
-            raise InputError(str(side), None, f"is not a side file: {error}") from error
+            raise InputError(side, None, f"is not a side file: {error}") from error
 
     @classmethod
     def beside(cls, surface: LabelledSurface, path: Path) -> CandidateTable:
@@ -103,7 +103,7 @@ class CandidateTable(WithArrays):
         name = surface.meta.get("side_file")
         if not isinstance(name, str):
             message = "is missing; give the scene (.toml) instead"
-            raise InputError(str(path), "meta.side_file", message)
+            raise InputError(path, "meta.side_file", message)
         side = path.parent / name
         table = cls.read(side)
         with naming(side):

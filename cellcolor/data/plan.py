@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from cellcolor.arrays import stretch_of
 from cellcolor.data.trajectory import Trajectory, TrajectoryTable
 from cellcolor.data.value import (
     Document,
@@ -114,8 +115,7 @@ class ContactPath(Value):
         """The number (k,) of the stroke that each sample is in, -1 without contact."""
         if self.contact is None:
             return np.zeros(len(self.joints), dtype=np.int64)
-        begins = self.contact & ~np.concatenate([[False], self.contact[:-1]])
-        return np.where(self.contact, np.cumsum(begins) - 1, -1)
+        return stretch_of(self.contact)
 
     @property
     def strokes(self) -> int:

@@ -395,7 +395,7 @@ def read_schemes(path: str | PathLike[str]) -> Iterator[Division]:
             yield SchemeLine.from_document(body).cells
         except InputError as error:
             field = f"line {number}" + (f", {error.field}" if error.field else "")
-            raise InputError(str(path), field, error.message) from error
+            raise InputError(path, field, error.message) from error
 
 
 def scheme_line(division: Division) -> str:

@@ -89,7 +89,7 @@ def kind_of_picture(path: Path, *, flat: bool = False) -> FileKind:
     kind = None if flat and path.suffix == ".html" else _KINDS.get(path.suffix)
     if kind is None:
         message = f"must end in {'' if flat else '.html, '}.png or .svg"
-        raise InputError(str(path), None, message)
+        raise InputError(path, None, message)
     return kind
 
 
@@ -184,7 +184,7 @@ def draw(picture: Picture, subject: Subject, options: Mapping[str, Any]) -> Draw
         InputError: an input is missing, or the inputs cannot be drawn together.
     """
     given: dict[str, Any] = {**dict.fromkeys(_OPTIONS), **options}
-    file = None if subject.path is None else str(subject.path)
+    file = subject.path
 
     def vertex(asked: object, field: str) -> int:
         count = len(subject.surface.vertices)
@@ -193,8 +193,7 @@ def draw(picture: Picture, subject: Subject, options: Mapping[str, Any]) -> Draw
         raise InputError(file, field, f"{asked!r} is not among 0 to {count - 1}")
 
     def color() -> int:
-        place = None if subject.surface_path is None else str(subject.surface_path)
-        return _number(subject.surface.colors, given["color"], place, "colors")
+        return _number(subject.surface.colors, given["color"], subject.surface_path, "colors")
 
     def plan() -> Plan:
         return given["plan"] if isinstance(given["plan"], Plan) else Plan.read(given["plan"])
@@ -226,7 +225,7 @@ def draw(picture: Picture, subject: Subject, options: Mapping[str, Any]) -> Draw
         return Drawing(picture.draw(**parts))
 
 
-def _number(names: tuple[str, ...], asked: str | int | None, file: str | None, field: str) -> int:
+def _number(names: tuple[str, ...], asked: str | int | None, file: Path | None, field: str) -> int:
     """The number of an item that was asked for by name or by number."""
     if asked in names:
         return names.index(str(asked))

@@ -205,7 +205,7 @@ def require_motion(purpose: str, modules: Sequence[str]) -> None:
 
 def _lack(purpose: Path | str, module: str, extra: str) -> InputError:
     line = f"needs {module}: pip install '{DISTRIBUTION}[{extra}]'"
-    return InputError(str(purpose), None, line)
+    return InputError(purpose, None, line)
 
 
 def show_versions() -> None:

@@ -21,6 +21,7 @@ from cellcolor.data.wording import count
 from cellcolor.deadline import OutOfTime
 from cellcolor.door.subject import Result, Subject
 from cellcolor.errors import InputError, system_errors
+from cellcolor.exports.interface import PlannedMotion
 from cellcolor.exports.registry import EXPORTS, exported, programs_of, why_no_program
 from cellcolor.files.writing import (
     HTML,
@@ -38,7 +39,6 @@ from cellcolor.painting.paint import Painted
 
 if TYPE_CHECKING:
     from cellcolor.arrays import Array
-    from cellcolor.exports.interface import PlannedMotion
     from cellcolor.frontend import BuildReport, BuildResult
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.pictures.report_page.content import AnsweredScene
@@ -175,7 +175,7 @@ class UnfinishedPlan:
                 other_arm = name in EXPORTS and self.verdict is not None
                 whose = "for another arm" if other_arm else "that got further"
                 message = f"belongs to a plan {whose}; files of two plans are not mixed"
-                raise InputError(str(place / name), None, message)
+                raise InputError(place / name, None, message)
         with system_errors(place, "cannot be made"):
             place.mkdir(parents=True, exist_ok=True)
         write([Output(place / name, KINDS[name], [files[name]]) for name in files])
@@ -183,8 +183,6 @@ class UnfinishedPlan:
 
     def _motion(self, export_step_s: float | None = None) -> PlannedMotion | None:
         """What exports are made of; None without a trajectory."""
-        from cellcolor.exports.interface import PlannedMotion
-
         if self.trajectory is None:
             return None
         prepared, robot = self.built.prepared, self.built.robot
@@ -272,8 +270,7 @@ def controller_base(prepared: PreparedScene) -> Array:
         return prepared.robot.base_frame(base)
     except KeyError as error:
         message = f"no link {base!r} stands still before the first joint"
-        file = None if setup.file is None else str(setup.file)
-        raise InputError(file, "controller.base_link", message) from error
+        raise InputError(setup.file, "controller.base_link", message) from error
 
 
 class PlanOutOfTime(OutOfTime):
@@ -295,7 +292,7 @@ class NothingCovered(InputError):
         report: what the build found, reachability by reason among it.
     """
 
-    def __init__(self, report: BuildReport, file: str | None) -> None:
+    def __init__(self, report: BuildReport, file: Path | None) -> None:
         self.report = report
         super().__init__(file, None, report.nothing_covered or "there is nothing to cover")
 

@@ -251,7 +251,7 @@ def _built(prepared: PreparedScene, path: Path | None, clock: StageClock) -> Sub
     built = build_prepared(prepared, clock)
     subject = Subject(path, built)
     if subject.graph(clock.deadline).nothing_to_cover:
-        raise NothingCovered(built.report, str(prepared.scene.file or "") or None)
+        raise NothingCovered(built.report, prepared.scene.file)
     return subject
 
 

@@ -94,7 +94,7 @@ def arm_of(
         message += f": --fix {inside[0]} makes a joint of the arm itself stand still"
     elif "fixed_joints" in message + (fault.field or ""):
         message += " (here: --fix JOINT=POSITION)"
-    raise InputError(fault.file or str(urdf), fault.field, message)
+    raise InputError(fault.file or urdf, fault.field, message)
 
 
 def _setup_of(keys: dict[str, str], urdf: Path, tool: Path | None) -> Setup:

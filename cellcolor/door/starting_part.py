@@ -52,7 +52,7 @@ def part_keys_of(
     from cellcolor.frontend.parts.mesh_file import UNITS, MeshObject
 
     if looked.refusal_after_repair is not None:
-        raise InputError(str(mesh), None, looked.refusal_after_repair)
+        raise InputError(mesh, None, looked.refusal_after_repair)
     unit = UNITS[looked.unit]
     part = MeshObject(file=str(mesh), meters_per_unit=unit, repair=bool(looked.repairs))
     surface = part.surface()

@@ -109,8 +109,7 @@ class Subject:
             InputError: this is no scene.
         """
         if self.built is None:
-            file = None if self.path is None else str(self.path)
-            raise InputError(file, "format", "only a scene (.toml) has an arm")
+            raise InputError(self.path, "format", "only a scene (.toml) has an arm")
         return self.built
 
     @cached_property
@@ -190,7 +189,7 @@ class Subject:
         wrong = wrong_cell(self.surface, instance, reference.vertex_cell, deadline)
         if wrong is not None:
             what = f"not those on the surface {reference.path}, in the part with cell {wrong}"
-            raise InputError(str(self.path), "edges", what)
+            raise InputError(self.path, "edges", what)
         return None
 
     def _faults_of(self, surface: LabelledSurface) -> Iterator[tuple[str, str]]:
@@ -239,7 +238,7 @@ def open_subject(
         path = find_file(source)
         if path.suffix.lower() in _MESHES and path.is_file():
             message = "is a mesh, which has no colors: cellcolor new makes a scene of it and an arm"
-            raise InputError(str(path), None, message)
+            raise InputError(path, None, message)
         if not is_scene(path):
             found: Instance | LabelledSurface = read_one_of(path, (Instance, LabelledSurface))
             if isinstance(found, Instance):
@@ -275,7 +274,7 @@ def scene_of(scene: str | PathLike[str] | Scene) -> Scene:
         return scene  # type: ignore[return-value]
     path = find_file(scene)  # type: ignore[arg-type]
     if not is_scene(path):
-        raise InputError(str(path), None, "is no scene: a scene is a file .toml")
+        raise InputError(path, None, "is no scene: a scene is a file .toml")
     with extras_for(path):
         from cellcolor.frontend import Scene as SceneValue
     return SceneValue.read(path)

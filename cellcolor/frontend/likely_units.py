@@ -104,7 +104,7 @@ def _no_larger_than_part(
                 key = "object" if unit is None else "object.meters_per_unit"
                 meant = "in meters already" if unit is None else f"{1000 * unit:g}"
                 message = f"the part is {size}, less than {field} ({length:g} m): {meant}?"
-                raise InputError(None if scene.file is None else str(scene.file), key, message)
+                raise InputError(scene.file, key, message)
             message = f"larger than the part ({size}): {looks_like_millimeters(length)}"
             raise InputError(None, field, message)
 

@@ -105,9 +105,8 @@ def candidates_of(
                 if prepared is None and not misplaced:
                     raise
                 if named and misplaced and not stops:
-                    file = None if given.file is None else str(given.file)
                     message = f"{_in_words(pose)} is no set-up: {error.message}"
-                    raise InputError(file, "placement", message) from error
+                    raise InputError(given.file, "placement", message) from error
                 stop = f" with {positions_in_words(fixed)}" if (fixed := _fixed(given)) else ""
                 found.refused.append(f"{given.name} at {_in_words(pose)}{stop}: {error.message}")
                 continue
@@ -140,12 +139,11 @@ def _check_same_part(part: LabelledSurface, prepared: PreparedScene) -> None:
     own = prepared.own_surface
     same = np.array_equal(part.vertices, own.vertices) and np.array_equal(part.faces, own.faces)
     if not same:
-        file = None if prepared.scene.file is None else str(prepared.scene.file)
         message = (
             f"has {len(own.vertices)} vertices that are not the {len(part.vertices)} of the first "
             "scene's object: set-ups are of one part, on one mesh"
         )
-        raise InputError(file, "object", message)
+        raise InputError(prepared.scene.file, "object", message)
 
 
 def plan_of(

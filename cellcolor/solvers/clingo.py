@@ -7,9 +7,6 @@ It needs the extra ``peers``.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from importlib.metadata import version
-from importlib.util import find_spec
 from math import comb
 from typing import TYPE_CHECKING
 
@@ -17,13 +14,14 @@ from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import ModelSize
 from cellcolor.deadline import OutOfTime
-from cellcolor.errors import SolverMissing, TooLarge
+from cellcolor.errors import TooLarge
 from cellcolor.files.writing import shipped_folder
-from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
+from cellcolor.solvers.interface import Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains, only_loops
+from cellcolor.solvers.peers import Peer, Search
 
 if TYPE_CHECKING:
-    from clingo import Model, Symbol
+    from clingo import Model
 
 MODEL = shipped_folder() / "models" / "constraints" / "coloring.lp"
 """The answer set program."""
@@ -40,22 +38,10 @@ _HEARD_AFTER = 0.1
 """Seconds between two looks at the deadline; Python handles a signal (Ctrl-C) only then."""
 
 
-class ClingoSolver:
-    """Fewest segments in the search space ``paper``, for cells with one live loop each.
+class ClingoSolver(Peer):
+    """clingo in this process, since it can be interrupted."""
 
-    A live loop is a border loop with edges that can be joined.
-    """
-
-    abilities = Abilities()
-
-    def __init__(self) -> None:
-        if find_spec("clingo") is None:
-            raise SolverMissing("clingo", "pip install 'fewest-lift-offs[peers]'")
-
-    @property
-    def version(self) -> str:
-        """The version of clingo."""
-        return f"clingo {version('clingo')}"
+    name, package, module, called = "clingo", "clingo", "clingo", "clingo"
 
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
@@ -72,23 +58,19 @@ class ClingoSolver:
         control.load(str(MODEL))
         control.add("base", [], facts)
         control.ground([("base", [])])
-        found: list[tuple[int, Sequence[Symbol]]] = []
-        bounds = [0]
-
-        def report() -> None:
-            if progress is not None:
-                progress(found[-1][0] if found else None, bounds[-1])
+        heard = Search(instance, deadline, options.seed, progress)
 
         def on_model(model: Model) -> None:
-            found.append((sum(model.cost), model.symbols(shown=True)))
-            report()
+            color: dict[int, int] = {}
+            after: dict[int, int] = {}
+            for symbol in model.symbols(shown=True):
+                first, second = (argument.number for argument in symbol.arguments)
+                (color if symbol.name == "joined" else after)[first] = second
+            heard.found(division_of_chains(instance, color, after))
 
-        def on_unsat(lower: Sequence[int]) -> None:
-            bounds.append(max(bounds[-1], sum(lower)))
-            report()
-
-        complete = False
-        with control.solve(on_model=on_model, on_unsat=on_unsat, async_=True) as search:
+        with control.solve(
+            on_model=on_model, on_unsat=lambda lower: heard.bounded(sum(lower)), async_=True
+        ) as search:
             try:
                 while not search.wait(min(_HEARD_AFTER, deadline.left)) and not deadline.over:
                     pass
@@ -96,19 +78,12 @@ class ClingoSolver:
                 pass  # a signal ended it early
             finally:
                 search.cancel()
-                complete = bool(search.get().exhausted)
+                if search.get().exhausted:
+                    heard.done()
         program = control.statistics["problem"]["lp"]
         size = ModelSize(int(program["atoms"]), int(program["rules"]))
-        if not found:
-            return Answer(None, (), (Bound("search", bounds[-1], "strands"),), model=size)
-        segments, symbols = found[-1]
-        bound = Bound("search", segments if complete else bounds[-1], "strands")
-        color: dict[int, int] = {}
-        after: dict[int, int] = {}
-        for symbol in symbols:
-            first, second = (argument.number for argument in symbol.arguments)
-            (color if symbol.name == "joined" else after)[first] = second
-        return Answer(division_of_chains(instance, color, after), (), (bound,), model=size)
+        bound = Bound("search", heard.bound, "strands")
+        return Answer(heard.best, (), (bound,), model=size)
 
 
 def asp_facts(instance: Instance) -> str:

@@ -1,8 +1,8 @@
 """Gecode and Chuffed on the MiniZinc model, run by the program ``minizinc``.
 
 The model is ``models/constraints/coloring.mzn``; ``docs/models.md`` says what it has and why. It
-shares nothing with the other solvers. Neither solver gives a bound before it has searched
-everything, so there is a bound with the last solution or none.
+shares nothing but the color regions with other solvers. Neither solver gives a bound before it has
+searched everything, so there is a bound with the last solution or none.
 """
 
 from __future__ import annotations
@@ -11,22 +11,17 @@ import math
 import re
 import shutil
 import subprocess
-import tempfile
 from collections.abc import Iterable
-from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
-from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division, count_segments
-from cellcolor.deadline import OutOfTime
-from cellcolor.errors import CellcolorError, SolverMissing, TooLarge
+from cellcolor.errors import SolverMissing, TooLarge
 from cellcolor.files.writing import shipped_folder
-from cellcolor.processes import Child
-from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
+from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.joined_chains import division_of_chains, only_loops
+from cellcolor.solvers.peers import ProgramPeer, Search, Started
 
 _MOST_PAIRS = 30_000
 """The most pairs of darts of one cell: the model has a constraint for each, and MiniZinc takes a
@@ -48,7 +43,12 @@ def minizinc_data(instance: Instance) -> str:
         raise TooLarge(f"{pairs} pairs of darts are too many for the MiniZinc model")
     darts = [dart for loop in loops for dart in loop]
     number = {dart: place for place, dart in enumerate(darts, start=1)}
-    region = _regions(instance, loops)
+    regions = [
+        [(cell, color) for cell in cells]
+        for color, cells in color_regions(instance)
+        if any(color in instance.joinable(dart) for cell in cells for dart in loops[cell])
+    ]
+    region = {own: number for number, all_ in enumerate(regions, start=1) for own in all_}
     colors = len(instance.colors)
     cell_of = {dart: cell for cell, loop in enumerate(loops) for dart in loop}
     first = [1 + sum(map(len, loops[:cell])) for cell in range(len(loops))]
@@ -72,31 +72,11 @@ def minizinc_data(instance: Instance) -> str:
             ("twin", _array(number[-dart] for dart in darts)),
             ("joinable", _array(_set(c + 1 for c in instance.joinable(dart)) for dart in darts)),
             ("id", _array(darts)),
-            ("regions", len(set(region.values()))),
+            ("regions", len(regions)),
             ("region", f"array2d(1..{len(darts)}, 1..{colors}, {_array(region_of)})"),
             ("regions_of", _array(map(_set, of_cell))),
         )
     )
-
-
-def _regions(instance: Instance, loops: list[tuple[int, ...]]) -> dict[tuple[int, int], int]:
-    """Color regions by cell and color, numbered from 1; those of a single cell are left out."""
-    number: dict[tuple[int, int], int] = {}
-    for cell in instance.cells:
-        for color in cell.colors:
-            begin = (cell.id, color)
-            if begin in number or not any(color in instance.joinable(d) for d in loops[cell.id]):
-                continue
-            name = len(set(number.values())) + 1
-            number[begin] = name
-            waiting = [cell.id]
-            while waiting:
-                for dart in loops[waiting.pop()]:
-                    other = instance.across(dart), color
-                    if color in instance.joinable(dart) and other not in number:
-                        number[other] = name
-                        waiting.append(other[0])
-    return number
 
 
 def _array(values: Iterable[object]) -> str:
@@ -111,11 +91,9 @@ MODEL = shipped_folder() / "models" / "constraints" / "coloring.mzn"
 """The model."""
 
 
-class _MiniZinc:
+class _MiniZinc(ProgramPeer):
     """A solver that MiniZinc knows by a tag."""
 
-    abilities = Abilities()
-    name: ClassVar[str]
     how: ClassVar[str]
     flags: ClassVar[tuple[str, ...]] = ()
 
@@ -133,60 +111,45 @@ class _MiniZinc:
 
     @property
     def version(self) -> str:
-        """The version of the solver."""
         return self._known or self.name
 
-    def minimize(
-        self, instance: Instance, options: Options, progress: OnProgress | None = None
-    ) -> Answer:
-        """As the interface says; a CellcolorError if MiniZinc or the solver fails."""
-        data = minizinc_data(instance)
-        best: Division | None = None
-        complete, failure = False, None
+    def begin(self, search: Search, folder: Path) -> Started:
+        file = folder / "instance.dzn"
+        file.write_text(minizinc_data(search.instance), encoding="ascii")
         color: dict[int, int] = {}
         after: dict[int, int] = {}
-        # A moment is kept back for reading the answer.
-        deadline = options.deadline.earlier(0.05 * min(options.deadline.left, 10.0))
-        with tempfile.TemporaryDirectory(prefix="cellcolor-") as place, suppress(OutOfTime):
-            file = Path(place) / "instance.dzn"
-            file.write_text(data, encoding="ascii")
-            command = ["minizinc", "--solver", self.name, "-a", "-r", str(options.seed)]
-            if math.isfinite(deadline.left):
-                # For the case that this process is killed; a second later than the deadline, since
-                # MiniZinc ends with an error where its limit comes before it has begun to search.
-                command += ["--time-limit", str(math.ceil(1000 * (deadline.left + 1.0)))]
-            with Child([*command, *self.flags, str(MODEL), str(file)], Path(place)) as child:
-                # A signal may stand for the end of the time: OutOfTime.
-                for line in child.lines(deadline):
-                    word, *numbers = line.split() or [""]
-                    if word in ("joined", "link"):
-                        into = color if word == "joined" else after
-                        into[int(numbers[0])] = int(numbers[1])
-                    elif word == "-" * 10:  # a division is complete, better than those before
-                        best = division_of_chains(instance, color, after)
-                        color, after = {}, {}
-                        if progress is not None:
-                            progress(count_segments(best), 0)
-                    elif word == "=" * 10:
-                        complete = True
-                failure = child.failure
-        if failure is not None and best is None:
-            raise CellcolorError(f"{self.name}: {failure}")
-        if best is None or not complete:
-            return Answer(best, (), ())
-        return Answer(best, (), (Bound("search", count_segments(best), "strands"),))
+
+        def hear(line: str) -> None:
+            word, *numbers = line.split() or [""]
+            if word in ("joined", "link"):
+                into = color if word == "joined" else after
+                into[int(numbers[0])] = int(numbers[1])
+            elif word == "-" * 10:  # a division is complete
+                search.found(division_of_chains(search.instance, color, after))
+                color.clear()
+                after.clear()
+            elif word == "=" * 10:
+                search.done()
+
+        command: list[str | Path] = ["minizinc", "--solver", self.name, "-a", *self.flags]
+        command += ["-r", str(search.seed)]
+        if math.isfinite(search.deadline.left):
+            # For the case that this process is killed; a second later than the deadline, since
+            # MiniZinc ends with an error where its limit comes before it has begun to search.
+            command += ["--time-limit", str(math.ceil(1000 * (search.deadline.left + 1.0)))]
+        return [*command, MODEL, file], hear
 
 
 class GecodeSolver(_MiniZinc):
     """Gecode, a solver by propagation and search."""
 
-    name = "gecode"
+    name, called = "gecode", "Gecode"
     how = "install MiniZinc with Gecode, for example: apt install minizinc fzn-gecode"
 
 
 class ChuffedSolver(_MiniZinc):
     """Chuffed, which learns clauses. It may leave the model's search order (``-f``)."""
 
-    name = "chuffed"
+    name, called = "chuffed", "Chuffed"
     how = "install the MiniZinc bundle (https://www.minizinc.org), which has Chuffed"
     flags = ("-f",)

@@ -16,7 +16,7 @@ from cellcolor.frontend.arm.inverse import is_tool_on_last_axis
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult
 from cellcolor.memory import chunks
-from cellcolor.trajectory_checker.dense import across_of, angles, joint_steps, poses_of, turns_off
+from cellcolor.trajectory_checker.dense import across_of, angles, joints_off, poses_of, turns_off
 from cellcolor.trajectory_checker.tolerances import AT_VERTEX, OFF_SURFACE, TILT, TURN
 
 
@@ -75,9 +75,7 @@ def at_vertices(
     for rows in chunks(len(joints)):
         deadline.check()
         known = built.configurations[vertex[rows]][:, :, compared]
-        asked = joints[rows, None][..., compared]
-        way = joint_steps(robot.slides[compared], asked, known).max(axis=2)
-        way = np.where(np.isnan(way), np.inf, way)
+        way = joints_off(robot.slides[compared], joints[rows][:, compared], known)
         branch[rows] = np.argmin(way, axis=1)
         apart[rows] = way[np.arange(len(way)), branch[rows]]
     turned = _turned(built, vertex, branch, joints, axes, deadline)

@@ -165,8 +165,7 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
             given = getattr(motion, f"joint_{key}")
             if given is not None and len(given) != robot.joints:
                 message = f"needs {robot.joints} numbers, has {len(given)}"
-                file = None if setup.file is None else str(setup.file)
-                raise InputError(file, f"motion.joint_{key}", message)
+                raise InputError(setup.file, f"motion.joint_{key}", message)
         acceleration = np.array(motion.joint_accelerations_rad_per_s2)
         if motion.joint_jerks_rad_per_s3 is not None:
             jerk = np.array(motion.joint_jerks_rad_per_s3)

@@ -15,7 +15,7 @@ from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.memory import chunks
-from cellcolor.trajectory_checker.dense import Dense, across_of, angles, joint_steps, turns_off
+from cellcolor.trajectory_checker.dense import Dense, across_of, angles, joints_off, turns_off
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
 from cellcolor.trajectory_checker.tolerances import BRANCH, LEAVING, OFF_SURFACE, TILT, TURN
@@ -110,12 +110,8 @@ def branches_of(prepared: PreparedScene, dense: Dense, rows: Index, deadline: De
     for part in chunks(len(rows)):
         own = rows[part]
         solutions, before = _solutions(prepared, dense, own, deadline)
-        off = joint_steps(
-            prepared.robot.slides[:compared],
-            dense.joints[own, None, :compared],
-            solutions[..., :compared],
-        ).max(axis=2)
-        off = np.where(np.isnan(off), np.inf, off)
+        asked, slides = dense.joints[own, :compared], prepared.robot.slides[:compared]
+        off = joints_off(slides, asked, solutions[..., :compared])
         nearest = np.argmin(off, axis=1)
         least = off[np.arange(len(own)), nearest]
         known = least <= BRANCH

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, numbered, stretch_of
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import TooLarge
@@ -60,23 +60,21 @@ class Dense:
         return -self.axes
 
 
-def joint_steps(slides: Mask, first: Array, second: Array) -> Array:
-    """How far each joint (..., joints) has to move, from 0 on: rad modulo full circles, or m."""
-    way = second - first
+def joints_off(slides: Mask, joints: Array, known: Array) -> Array:
+    """How far configurations (k, joints) are from known ones (k, branches, joints), (k, branches).
+
+    In the joint that is farthest, m or rad modulo full circles; infinite if none is known.
+    """
+    way = known - joints[:, None]
     around = np.remainder(way + np.pi, 2 * np.pi) - np.pi
-    return np.abs(np.where(slides, way, around))
+    off = np.abs(np.where(slides, way, around)).max(axis=2)
+    return np.where(np.isnan(off), np.inf, off)
 
 
 def angles(one: Array, other: Array) -> Array:
     """Angles (k,) between unit vectors (k, 3), rad."""
     chord = np.linalg.norm(one - other, axis=1)
     return np.asarray(2 * np.arcsin(np.clip(chord / 2, 0.0, 1.0)))
-
-
-def strokes_of(contact: Mask) -> Index:
-    """The number of the stroke (k,) that each configuration is part of, -1 without contact."""
-    begins = contact & ~np.concatenate([[False], contact[:-1]])
-    return np.where(contact, np.cumsum(begins) - 1, -1)
 
 
 def poses_of(robot: Robot, joints: Array, deadline: Deadline) -> tuple[Array, Array]:
@@ -138,8 +136,7 @@ def densified(
     pieces = np.append(pieces, 1) if count else pieces
     if pieces.sum() > _MOST:
         raise TooLarge(f"the trajectory is too long: more than {_MOST} configurations to be tested")
-    sample = np.repeat(np.arange(count), pieces)
-    number = np.arange(len(sample)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    sample, number = numbered(pieces)
     way = number / pieces[sample]
     after = np.minimum(sample + 1, max(count - 1, 0))
     at = joints[sample] + way[:, None] * (joints[after] - joints[sample])
@@ -147,4 +144,4 @@ def densified(
     put_in = np.flatnonzero(number)
     all_tips[put_in], all_axes[put_in] = poses_of(robot, at[put_in], deadline)
     contact = trajectory.contact[sample] & (trajectory.contact[after] | (number == 0))
-    return Dense(sample, way, at, all_tips, all_axes, contact, strokes_of(contact))
+    return Dense(sample, way, at, all_tips, all_axes, contact, stretch_of(contact))

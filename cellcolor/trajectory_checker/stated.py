@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.arrays import Array, stretches, unit
+from cellcolor.arrays import Array, stretch_of, stretches, unit
 from cellcolor.data.trajectory import ExtraLiftOff, RepeatedStretch, Trajectory, TrajectoryTable
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.trajectory_checker.dense import angles, poses_of, strokes_of
+from cellcolor.trajectory_checker.dense import angles, poses_of
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import POSE_ANGLE, POSE_DISTANCE
 
@@ -96,7 +96,7 @@ def completed(table: TrajectoryTable, robot: Robot, deadline: Deadline = NEVER) 
         normals = -axes
     else:
         points, normals = poses[:, :3], poses[:, 3:]
-    segment = columns.get("segment", strokes_of(contact)).astype(np.int64)
+    segment = columns.get("segment", stretch_of(contact)).astype(np.int64)
     return Trajectory(
         name=table.name,
         joint_names=robot.joint_names,

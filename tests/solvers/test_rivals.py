@@ -25,13 +25,13 @@ from cellcolor.errors import CellcolorError, SolverMissing, TooLarge
 from cellcolor.lab.families import hub, hub_grid, hub_minimum, hub_with_loops, planar_graph
 from cellcolor.lab.families.registry import SMALL
 from cellcolor.processes import Child
+from cellcolor.solvers import peers
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.choco import solver as choco
 from cellcolor.solvers.choco.model import Problem, Ranks
 from cellcolor.solvers.dfs import ReferenceSolver
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.joined_chains import division_of_chains
-from cellcolor.solvers.linear import rivals
 from cellcolor.solvers.linear.coloring import Coloring
 from cellcolor.solvers.registry import REFERENCE, make_solver, solver_version
 from cellcolor.solvers.seamed import Seamed
@@ -193,7 +193,7 @@ def test_the_best_at_the_time_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     alone = [f"x{v}" for v in model.costs if model.names[v][0] == "alone"]
     says = f"echo bound 1.99999; echo solution {' '.join(alone)}; exec sleep 600"
     start = processes.subprocess.Popen
-    monkeypatch.setattr(rivals, "find_spec", lambda _: True)
+    monkeypatch.setattr(peers, "find_spec", lambda _: True)
     monkeypatch.setattr(
         processes.subprocess,
         "Popen",
@@ -307,7 +307,7 @@ def test_a_solver_that_fails_is_an_error_or_a_note(monkeypatch: pytest.MonkeyPat
     def replaced(_command: object, **options: object) -> object:
         return start([sys.executable, "-c", next(scripts)], **options)
 
-    monkeypatch.setattr(rivals, "find_spec", lambda _: True)
+    monkeypatch.setattr(peers, "find_spec", lambda _: True)
     monkeypatch.setattr(processes.subprocess, "Popen", replaced)
     with pytest.raises(CellcolorError, match=r"highs: .*broken"):
         solve(instance, Options(), "highs")
@@ -329,7 +329,7 @@ def test_lines_of_choco_itself_are_no_solutions() -> None:
 
 
 def test_missing_ones_say_how_to_get_them(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(rivals, "find_spec", lambda _: None)
+    monkeypatch.setattr(peers, "find_spec", lambda _: None)
     monkeypatch.setenv("PATH", "")
     for module in ("pychoco", "clingo"):
         monkeypatch.setitem(sys.modules, module, None)

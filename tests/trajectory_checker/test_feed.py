@@ -8,11 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from joint_drives import driven
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, stretch_of
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import StrokeFeed
 from cellcolor.frontend.setup import Motion
-from cellcolor.trajectory_checker.dense import Dense, strokes_of
+from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.feed import feed_of, judge_feed, judge_tool_speeds
 from cellcolor.trajectory_checker.joint_motion import JointLimits
@@ -72,7 +72,7 @@ def along(speed: Array, lever: Array) -> tuple[Trajectory, Dense]:
     )  # fmt: skip
     every = np.arange(len(way))
     return drive, Dense(
-        every, np.zeros(len(way)), joints, tips, -plain.normals, contact, strokes_of(contact)
+        every, np.zeros(len(way)), joints, tips, -plain.normals, contact, stretch_of(contact)
     )
 
 

@@ -1,95 +1,59 @@
 """Choco as a :class:`cellcolor.solvers.interface.Solver`.
 
 Run as a program, ``python -m cellcolor.solvers.choco.solver INSTANCE SECONDS``, this module solves
-an instance. It prints the size of the model, then each better solution, as lines of JSON. The
-solver runs it in a process of its own: Choco hears no signal while it searches, its errors end the
-process, and it may print.
+an instance. It prints the size of the model, then each better solution, as lines of JSON.
 """
 
 from __future__ import annotations
 
 import json
 import sys
-import tempfile
-from importlib.metadata import version
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import ModelSize
-from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.errors import CellcolorError, SolverMissing
-from cellcolor.processes import Child
+from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.cover import color_regions, greedy_independent_set
 from cellcolor.solvers.choco.model import Problem, Ranks
-from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains
+from cellcolor.solvers.peers import ProgramPeer, Search, Started
 
 MOST_MEMORY = 3 * 2**30
 """Bytes of memory that the process may take; then it ends, and what it has found is kept."""
 
 
-class ChocoSolver:
-    """Fewest segments in the search space ``paper``, for cells with one live loop each."""
+class ChocoSolver(ProgramPeer):
+    """Choco searches from above and tells no bound of its own until it has proved the minimum.
 
-    abilities = Abilities()
+    Until then the bound is a number of cells of which no two lie in one color region.
+    """
 
-    def __init__(self) -> None:
-        if find_spec("pychoco") is None:
-            raise SolverMissing("choco", "pip install 'fewest-lift-offs[peers]'")
+    name, package, module, called = "choco", "pychoco", "pychoco", "pychoco"
 
-    @property
-    def version(self) -> str:
-        """The version of pychoco, which includes Choco."""
-        return f"pychoco {version('pychoco')}"
+    def begin(self, search: Search, folder: Path) -> Started:
+        instance, deadline = search.instance, search.deadline
+        Problem.of(instance, deadline)  # what cannot be solved is refused here
+        search.known = (Bound("strangers", _fewest(instance), "surface"),)
+        file = folder / "instance.json"
+        file.write_text(instance.to_json(), encoding="utf-8")
 
-    def minimize(
-        self, instance: Instance, options: Options, progress: OnProgress | None = None
-    ) -> Answer:
-        """Choco searches from above and tells no bound of its own until it has proved the minimum.
+        def hear(line: str) -> None:
+            told = _told(line)
+            if "variables" in told:
+                search.size = ModelSize(told["variables"], told["constraints"])
+            if "segments" in told:
+                colors, after = dict(told["colors"]), dict(told["after"])
+                search.found(division_of_chains(instance, colors, after))
+            if told.get("proved"):
+                search.done()
 
-        Until then the bound is a number of cells of which no two lie in one color region.
+        return [sys.executable, "-m", __name__, file, str(deadline.left)], hear
 
-        Raises:
-            CellcolorError: Choco failed before it found a solution.
-        """
-        if not instance.cells:
-            return Answer((), (), ())
-        deadline = options.deadline
-        best: dict[str, Any] | None = None
-        proved, fewest = False, 0
-        model: ModelSize | None = None
-        try:
-            Problem.of(instance, deadline)  # what cannot be solved is refused here
-            fewest = len(greedy_independent_set(color_regions(instance)))
-            with tempfile.TemporaryDirectory(prefix="cellcolor-") as name:
-                folder = Path(name)
-                file = folder / "instance.json"
-                file.write_text(instance.to_json(), encoding="utf-8")
-                command = [sys.executable, "-m", __name__, str(file), str(deadline.left)]
-                with Child(command, folder) as child:
-                    for line in child.lines(deadline):
-                        told = _told(line)
-                        proved = told.get("proved", proved)
-                        if "variables" in told:
-                            model = ModelSize(told["variables"], told["constraints"])
-                        if "segments" in told:
-                            best = told
-                            if progress is not None:
-                                progress(told["segments"], fewest)
-                    if best is None and child.failure is not None:
-                        raise CellcolorError(child.failure)
-        except OutOfTime:
-            pass  # before the search began; or a signal that stands for the end of the time
-        bounds = [Bound("strangers", fewest, "surface")]
-        if best is None:
-            return Answer(None, (), tuple(bounds), model=model)
-        if proved:
-            bounds.append(Bound("search", best["segments"], "strands"))
-        division = division_of_chains(instance, dict(best["colors"]), dict(best["after"]))
-        return Answer(division, (), tuple(bounds), model=model)
+
+def _fewest(instance: Instance) -> int:
+    return len(greedy_independent_set(color_regions(instance)))
 
 
 def _told(line: str) -> dict[str, Any]:
@@ -109,9 +73,7 @@ def _main(path: str, seconds: float) -> None:
         resource.setrlimit(resource.RLIMIT_DATA, (MOST_MEMORY, MOST_MEMORY))
     deadline = Deadline.after(seconds)
     instance = Instance.read(path)
-    built = Ranks(
-        Problem.of(instance, deadline), len(greedy_independent_set(color_regions(instance)))
-    )
+    built = Ranks(Problem.of(instance, deadline), _fewest(instance))
     size = {"variables": built.variables, "constraints": built.constraints}
     print(json.dumps(size), flush=True)
     for solution in built.solutions(deadline.left):

@@ -1,4 +1,5 @@
 """The whole problem as a 0-1 linear model, its file formats, and solvers of such files.
 
-Nothing is shared with the other solvers. ``docs/models.md`` says what the model has and why.
+Nothing but the color regions is shared with other solvers. ``docs/models.md`` says what the model
+has and why.
 """

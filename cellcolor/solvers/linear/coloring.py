@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError, TooLarge
+from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.joined_chains import only_loops
 from cellcolor.solvers.linear.model import Model
 
@@ -32,31 +33,25 @@ class Region(NamedTuple):
     longest_way: int
 
 
-def color_regions(instance: Instance) -> dict[tuple[int, int], Region]:
+def regions_by_cell(instance: Instance) -> dict[tuple[int, int], Region]:
     """The region of each (cell, color) that can be joined to a neighbor."""
-    exits: dict[tuple[int, int], list[int]] = {}
-    for edge in instance.live_edges:
-        for color in instance.joinable(edge):
-            for dart in (edge, -edge):
-                exits.setdefault((instance.across(-dart), color), []).append(dart)
     found: dict[tuple[int, int], Region] = {}
-    for begin in exits:
-        if begin in found:
-            continue
-        cells, waiting = {begin[0]}, [begin[0]]
-        while waiting:
-            for dart in exits[waiting.pop(), begin[1]]:
-                other = instance.across(dart)
-                if other not in cells:
-                    cells.add(other)
-                    waiting.append(other)
-        color = begin[1]
-        edges = {abs(dart) for cell in cells for dart in exits[cell, color]}
+    for color, cells in color_regions(instance):
+        exits = [
+            [
+                dart
+                for loop in instance.live_loops[cell]
+                for dart in loop
+                if color in instance.joinable(dart)
+            ]
+            for cell in cells
+        ]
+        edges = {abs(dart) for darts in exits for dart in darts}
         # A cell with one exit is an end: a way meets two such cells at most.
-        ends = {abs(exits[cell, color][0]) for cell in cells if len(exits[cell, color]) == 1}
-        longest = len(edges) - len(ends) + min(2, len(ends))
-        for cell in cells:
-            found[cell, color] = Region(min(cells), color, longest)
+        ends = {abs(darts[0]) for darts in exits if len(darts) == 1}
+        if edges:
+            region = Region(min(cells), color, len(edges) - len(ends) + min(2, len(ends)))
+            found |= {(cell, color): region for cell in cells}
     return found
 
 
@@ -70,7 +65,7 @@ def estimated_terms(instance: Instance) -> int:
 
     Nearly all literals are in the constraints on crossings and on ranks.
     """
-    regions = color_regions(instance)
+    regions = regions_by_cell(instance)
     total = 0
     for cell in instance.cells:
         darts = sum(map(len, instance.live_loops[cell.id]))
@@ -100,7 +95,7 @@ class Coloring:
         if terms > MOST_TERMS:
             raise TooLarge(f"the 0-1 model would have {terms} literals, {MOST_TERMS} at most")
         self._instance = instance
-        self._regions = color_regions(instance)
+        self._regions = regions_by_cell(instance)
         self.model = Model()
         self.joined: dict[tuple[int, int], int] = {}
         self.link: dict[tuple[int, int], int] = {}
