@@ -109,9 +109,16 @@ def _lowest(one: _Placed, up: Array) -> Array:
 
 def _touch(one: _Placed, other: _Placed, margin: float) -> Mask:
     """Whether two things are no farther apart than a margin, (k,)."""
-    (first, to_first), (second, to_second) = _ball(one.shape), _ball(other.shape)
-    apart = one.points(first[None])[:, 0] - other.points(second[None])[:, 0]
-    hit = np.asarray(np.linalg.norm(apart, axis=1) <= to_first + to_second + margin)
+    # Seen from the other one, so that only the first has to be placed.
+    back = other.rotation.swapaxes(1, 2)
+    turns, places = back @ one.rotation, back @ (one.origin - other.origin)[:, :, None]
+    # Boxes around the two that a face of either separates cannot touch.
+    (middle, half), (there, half_there) = _box(one.shape), _box(other.shape)
+    apart, spread = turns @ middle + places[:, :, 0] - there, np.abs(turns)
+    most = margin + _ROUGH
+    within = np.abs(apart) <= half_there + spread @ half + most
+    within &= np.abs(apart[:, None] @ turns)[:, 0] <= half + half_there @ spread + most
+    hit = np.asarray(within.all(axis=1))
     # A ball or capsule is made wider by the margin, which is exact.
     wider, rest = [0.0, 0.0], margin
     for number, shape in enumerate((one.shape, other.shape)):
@@ -119,9 +126,6 @@ def _touch(one: _Placed, other: _Placed, margin: float) -> Mask:
             wider[number], rest = margin, 0.0
     a = fcl.CollisionObject(_geometry(one.shape, wider[0]), fcl.Transform())
     b = _everything(other.shape, wider[1])
-    # Seen from the other one, so that only the first has to be placed.
-    back = other.rotation.swapaxes(1, 2)
-    turns, places = back @ one.rotation, back @ (one.origin - other.origin)[:, :, None]
     for row in np.flatnonzero(hit):
         a.setTransform(fcl.Transform(turns[row], places[row, :, 0]))
         met = fcl.CollisionData()
@@ -165,17 +169,16 @@ def _geometry(shape: Shape, wider: float = 0.0) -> fcl.CollisionGeometry:
     return shape.made["fcl"]
 
 
-def _ball(shape: Shape) -> tuple[Array, float]:
-    """Center (3,) and radius of a ball around a shape in its own frame, m."""
+def _box(shape: Shape) -> tuple[Array, Array]:
+    """Center (3,) and half of the sizes (3,) of a box around a shape in its own frame, m."""
     if not len(shape.vertices):
         radius, *rest = shape.sizes
         if shape.kind == "box":
-            return np.zeros(3), float(np.linalg.norm(shape.sizes)) / 2
-        return np.zeros(3), radius + sum(rest) / 2
+            return np.zeros(3), np.asarray(shape.sizes) / 2
+        return np.zeros(3), radius + np.array([0.0, 0.0, sum(rest) / 2])
+    low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
     cell = shape.sizes[0] if shape.kind == "cells" else 0.0
-    low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0) + cell
-    center = (low + high) / 2
-    return center, float(np.linalg.norm(shape.vertices - center, axis=1).max()) + 2 * cell
+    return (low + high) / 2, (high - low) / 2 + 2 * cell
 
 
 def _holds(holder: _Placed, held: _Placed) -> Mask:
