@@ -10,6 +10,7 @@ raise the same.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable
+from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from itertools import compress
 from math import degrees
@@ -22,7 +23,6 @@ from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.links import continuous_along, valid_along
 from cellcolor.frontend.prepared import PreparedScene, named
 from cellcolor.frontend.reach.prepared_arm import prepare_arm
-from cellcolor.frontend.reach.validity_tests import Verdicts
 
 Apply = Callable[[PreparedScene, float], PreparedScene]
 """A scene, and by how much the restriction is weakened, infinite if it is left out: the scene with
@@ -293,11 +293,11 @@ def built_asking_less(
     clock.begin("validity at the vertices")
     known, refused = before.verdicts, np.isin(before.reasons, codes)
     found = prepared.judge(known.configurations[refused], deadline)
-    configurations, reasons = known.configurations.copy(), known.reasons.copy()
-    determinants, tracked = known.determinants.copy(), known.tracked.copy()
-    configurations[refused], reasons[refused] = found.configurations, found.reasons
-    determinants[refused], tracked[:, refused] = found.determinants, found.tracked
-    verdicts = Verdicts(configurations, reasons, determinants, tracked, known.reason_names)
+    verdicts = deepcopy(known)
+    verdicts.configurations[refused] = found.configurations
+    verdicts.reasons[refused] = found.reasons
+    verdicts.determinants[refused] = found.determinants
+    verdicts.tracked[:, refused] = found.tracked
     clock.begin("continuity")
     continuous = before.continuous.copy()
     rows = np.flatnonzero((verdicts.valid[edges].all(axis=1) & ~continuous).any(axis=1))

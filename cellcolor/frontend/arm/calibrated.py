@@ -159,13 +159,13 @@ class NearIdeal(Polished):
     off: tuple[float, float]
     farthest: float = 0.2
 
-    def remarks(self, solutions: Array) -> tuple[str, ...]:
-        """How the arm is solved, and how many of its solutions (n, s, joints) are missing."""
+    def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
+        """How the arm is solved, and how many of its solutions are missing."""
         angle, distance = math.degrees(self.off[0]), 1000 * self.off[1]
         return (
             f"calibrated arm, axes up to {angle:.2g} degrees and {distance:.2g} mm off the ideal "
             "one: solved by Newton's method from the ideal one's solutions; "
-            f"{remark_on_missing(self.robot, solutions)}",
+            f"{remark_on_missing(self.robot, self.solve(points, directions))}",
         )
 
     def starts(self, points: Array, directions: Array) -> Array:

@@ -81,9 +81,7 @@ class EaikKinematics(SixRevolute):
         return self._solution.solve(points, directions, branches)
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
-        if not isinstance(self._solution, NearIdeal):
-            return ()
-        return self._solution.remarks(self.solve(points, directions))
+        return self._solution.remarks(points, directions)
 
     def _closed_form(
         self,

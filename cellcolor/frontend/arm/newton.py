@@ -170,6 +170,10 @@ class Polished:
             return self._every(points, directions)
         return self._one_each(points, directions, branches, self.signs)[:, None]
 
+    def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:  # noqa: ARG002
+        """See :meth:`cellcolor.frontend.arm.inverse.InverseKinematics.remarks`."""
+        return ()
+
     def starts(self, points: Array, directions: Array) -> Array:
         """Configurations (n, s, joints) in rad that lead to all solutions, NaN for none."""
         return self.closed_form(points, directions)

@@ -256,7 +256,7 @@ class UrKinematics(SixRevolute):
         return self._near.solve(points, directions, branches)
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
-        return () if self._near is None else self._near.remarks(self.solve(points, directions))
+        return () if self._near is None else self._near.remarks(points, directions)
 
     def _near_ideal(self, off: tuple[float, float]) -> NearIdeal:
         """How an arm is solved whose axes are a little off those of the ideal one, rad and m.
