@@ -59,7 +59,10 @@ def decomposition_of(
     borders = Borders(surface, vertex_cell)
     curves = borders.curves(deadline)
     loops = loops_of(borders, curves, deadline)
-    _check_planar(surface, firsts, borders, loops, deadline)
+    for cell, genus in handles_of(surface, borders, loops, deadline).items():
+        if genus:
+            message = f"lies in cell {cell}, which is not planar (genus {genus})"
+            raise InputError(None, f"vertices[{firsts[cell]}]", message)
     areas = areas_of(surface, vertex_cell, len(firsts))
     cells = tuple(
         Cell(number, surface.vertex_colors[first], loops.get(number, ()), areas[number])
@@ -141,16 +144,16 @@ def loops_of(
     return {cell: tuple(found) for cell, found in loops.items()}
 
 
-def _check_planar(
+def handles_of(
     surface: LabelledSurface,
-    firsts: list[int],
     borders: Borders,
-    loops: dict[int, tuple[tuple[int, ...], ...]],
+    loops: Mapping[int, tuple[tuple[int, ...], ...]],
     deadline: Deadline,
-) -> None:
-    """Euler's formula for each cell: a surface of genus g with b border loops has 2 - 2g - b."""
+) -> dict[int, int]:
+    """The genus of each cell. By Euler's formula vertices - edges + triangles are 2 - 2 g - b in a
+    surface of genus g with b border loops."""
     cell_of = borders.cell_of
-    characteristic: Counter[int] = Counter(c for c in cell_of if c != OUTSIDE)
+    characteristic = Counter(cell_of)
     for a, b in deadline.watch(surface.left_of):
         # A mesh edge stands here once for each of its triangles: count it at one of them.
         inner = cell_of[a] == cell_of[b] and (a, b) not in borders.steps
@@ -159,11 +162,11 @@ def _check_planar(
     for a, b, c in deadline.watch(surface.faces.tolist()):
         if not borders.steps.intersection(((a, b), (b, c), (c, a))):
             characteristic[cell_of[a]] += 1
-    for cell, first in enumerate(firsts):
-        handles = 2 - len(loops.get(cell, ())) - characteristic[cell]
-        if handles != 0:
-            message = f"lies in cell {cell}, which is not planar (genus {handles // 2})"
-            raise InputError(None, f"vertices[{first}]", message)
+    return {
+        cell: (2 - len(loops.get(cell, ())) - own) // 2
+        for cell, own in characteristic.items()
+        if cell != OUTSIDE
+    }
 
 
 def areas_of(surface: LabelledSurface, vertex_cell: Sequence[int], cells: int) -> list[float]:

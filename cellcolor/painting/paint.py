@@ -30,7 +30,6 @@ from cellcolor.painting.refined import (
     unrefined,
 )
 from cellcolor.painting.trees import TooNarrow, Trees
-from cellcolor.union_find import UnionFind
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -212,23 +211,25 @@ def _painted(
     mesh.deadline.check()
     if report.segments is None:
         raise RefusedResult(f"a painting is not valid: {report.problems[0]}")
-    merged = _merged(mesh.surface, plan, segment_of)
-    painted = len(set(segment_of[segment_of >= 0].tolist()))
-    counted = painted - sum(len(group) - 1 for group in merged)
-    fewer = counted < (solution.segments or 0)
-    if report.segments != counted or (solution.proved_for_surface and fewer):
+    # The segments of the solution in each that the checker counts.
+    counted: list[set[int]] = [set() for _ in range(report.segments)]
+    for segment, number in zip(segment_of.tolist(), report.segment_of, strict=True):
+        if number >= 0:
+            counted[number].add(segment)
+    fallen_apart = sum(map(len, counted)) > len(set().union(*counted))
+    fewer = report.segments < (solution.segments or 0)
+    if fallen_apart or (solution.proved_for_surface and fewer):
         raise RefusedResult(
             f"a painting has {report.segments} segments, its solution {solution.segments}"
         )
-    refined = mesh.refined
     return Painted(
         surface=mesh.surface,
         plan=plan,
         segments=report.segments,
         segment_of=segment_of,
-        stands_for=refined.stands_for,
-        between=refined.between,
-        merged=merged,
+        stands_for=mesh.refined.stands_for,
+        between=mesh.refined.between,
+        merged=tuple(sorted(tuple(sorted(group)) for group in counted if len(group) > 1)),
     )
 
 
@@ -250,15 +251,3 @@ def _spread(mesh: _Mesh, trees: dict[int, int]) -> dict[int, int]:
                 length = float(np.linalg.norm(places[vertex] - places[other]))
                 heappush(queue, (far + length, other, number))
     return segment
-
-
-def _merged(surface: LabelledSurface, plan: Plan, segment_of: Index) -> tuple[tuple[int, ...], ...]:
-    """The segments of one color that touch each other, in groups."""
-    together: UnionFind[int] = UnionFind()
-    for a, b in surface.left_of:
-        color, first, second = plan.vertex_colors[a], segment_of[a], segment_of[b]
-        if color is None or first == second or color != plan.vertex_colors[b]:
-            continue
-        if color not in surface.cracked(a, b):
-            together.union(int(first), int(second))
-    return tuple(sorted(tuple(sorted(group)) for group in together.sets()))

@@ -20,7 +20,7 @@ one step:
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -68,14 +68,12 @@ class Refined:
             if colors := self.old.cracked(origin[a], origin[b]):
                 cracks.append(Crack(a, b, tuple(colors)))
         given_up = set(self.old.given_up)
-        return LabelledSurface(
-            name=self.old.name,
-            colors=self.old.colors,
+        return replace(
+            self.old,
             vertices=self.mesh.points,
             faces=self.mesh.corners,
             vertex_colors=tuple([self.old.vertex_colors[vertex] for vertex in origin]),
             cracks=tuple(cracks),
-            meta=self.old.meta,
             given_up=tuple([v for v, vertex in enumerate(origin) if vertex in given_up]),
         )
 

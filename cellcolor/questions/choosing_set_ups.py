@@ -17,19 +17,18 @@ from __future__ import annotations
 import heapq
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import ceil, inf
 
 import numpy as np
 from ortools.sat.python import cp_model
 
 from cellcolor.data.cells_and_edges import OUTSIDE
-from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
-from cellcolor.questions.set_ups import Region, side_by_side
+from cellcolor.questions.set_ups import Choice, Region, side_by_side
 from cellcolor.questions.tradeoff import few_that_cover, solved_model
 from cellcolor.solvers import checked
 from cellcolor.solvers.bounds.cover import color_regions
@@ -40,29 +39,6 @@ _WHOLE = 2**40
 _UNIT = 1000
 """Costs are added as whole numbers of thousandths of a lift-off, which an objective's price is."""
 _MOST_SETS = 20_000  # of set-ups, each with a model of its own
-
-
-@dataclass(frozen=True, eq=False)
-class Choice:
-    """Set-ups that cover enough, and how.
-
-    Attributes:
-        set_ups: their numbers, ascending.
-        surface: colors of set-ups side by side, without what is left out.
-        solution: of that surface, which the checker has passed.
-        covered_share: of the area that any set-up reaches, 0 to 1.
-        fewest_set_ups: no fewer set-ups cover enough.
-        at_least_segments: with as many set-ups, no division has fewer segments.
-        proved: whether no other choice is better, whatever the division of the surface.
-    """
-
-    set_ups: tuple[int, ...]
-    surface: LabelledSurface
-    solution: Solution
-    covered_share: float
-    fewest_set_ups: int = 1
-    at_least_segments: int = 1
-    proved: bool = False
 
 
 def choose(
@@ -123,7 +99,7 @@ def choose(
             solved, needed = asked.solved(chosen)
             masters[place].learn(chosen, needed)
             if solved is not None:
-                own = _UNIT * (solved.solution.segments or 0) + extra * len(solved.set_ups)
+                own = _UNIT * (solved.solution.segments or 0) + extra * len(solved.numbers)
                 if own < cost:
                     best, cost = solved, own
     except OutOfTime:
@@ -132,7 +108,7 @@ def choose(
     if best is None:
         raise OutOfTime
     proved = queue[0][0] >= cost
-    least = queue[0][0] - extra * len(best.set_ups)
+    least = queue[0][0] - extra * len(best.numbers)
     return replace(
         best,
         fewest_set_ups=fewest,

@@ -52,12 +52,11 @@ class SetUp:
 
 
 @dataclass(frozen=True, eq=False)
-class SetUpPlan:
-    """The set-ups to use, and how the surface is divided among them.
+class Choice:
+    """Set-ups that cover enough, and how the surface is divided among them.
 
     Attributes:
-        name: of the scene.
-        set_ups: those that are used, in the order of their numbers.
+        numbers: of the set-ups among the given ones, from 0, ascending.
         surface: in the part's own frame, the colors of the set-ups side by side, each with the
             number of its set-up before its name; what is left out on purpose has none.
         solution: of that surface, which the checker has passed.
@@ -66,6 +65,24 @@ class SetUpPlan:
         at_least_segments: with as many of them, no division has fewer segments.
         proved: whether no other choice among the given set-ups is better, for any division of the
             surface.
+    """
+
+    numbers: tuple[int, ...]
+    surface: LabelledSurface
+    solution: Solution
+    covered_share: float
+    fewest_set_ups: int = 1
+    at_least_segments: int = 1
+    proved: bool = False
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SetUpPlan(Choice):
+    """The set-ups to use, and how the surface is divided among them.
+
+    Attributes:
+        name: of the scene.
+        set_ups: those that are used, in the order of their numbers.
         alone: the set-up that covers most by itself, with the segments that it needs then.
         candidates: how many set-ups could be used.
         refused: why others could not be, a sentence each.
@@ -74,12 +91,6 @@ class SetUpPlan:
 
     name: str
     set_ups: tuple[SetUp, ...]
-    surface: LabelledSurface
-    solution: Solution
-    covered_share: float
-    fewest_set_ups: int
-    at_least_segments: int
-    proved: bool
     alone: SetUp
     candidates: int
     refused: tuple[str, ...] = ()

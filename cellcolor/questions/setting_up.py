@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
@@ -16,10 +16,10 @@ from cellcolor.frontend.build import StageClock, build_prepared
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
-from cellcolor.questions.choosing_set_ups import Choice, choose
+from cellcolor.questions.choosing_set_ups import choose
 from cellcolor.questions.placements import Pose
 from cellcolor.questions.placing import pose_of, stands_in
-from cellcolor.questions.set_ups import SetUp, SetUpPlan, positions_in_words
+from cellcolor.questions.set_ups import Choice, SetUp, SetUpPlan, positions_in_words
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 
@@ -132,16 +132,7 @@ def _built(there: PreparedScene, deadline: Deadline) -> LabelledSurface:
     if not any(surface.vertex_colors):
         raise InputError(None, None, "nothing is reached")
     decomposition_of(surface, deadline=deadline)  # refuses cells that are not planar
-    own = there.own_surface
-    return LabelledSurface(
-        there.scene.name,
-        surface.colors,
-        own.vertices,
-        own.faces,
-        surface.vertex_colors,
-        surface.cracks,
-        given_up=surface.given_up,
-    )
+    return replace(surface, vertices=there.own_surface.vertices)
 
 
 def _check_same_part(part: LabelledSurface, prepared: PreparedScene) -> None:
@@ -173,14 +164,9 @@ def plan_of(
     instance = decomposition_of(candidates.surfaces[best]).instance
     alone = checked.solve(instance, options)
     return SetUpPlan(
+        **vars(choice),
         name=candidates.scenes[0].name,
         set_ups=_set_ups(candidates, choice, whole),
-        surface=choice.surface,
-        solution=choice.solution,
-        covered_share=choice.covered_share,
-        fewest_set_ups=choice.fewest_set_ups,
-        at_least_segments=choice.at_least_segments,
-        proved=choice.proved,
         alone=_set_up(candidates, best, alone.segments or 0, float(covered[best]) / whole),
         candidates=len(candidates.scenes),
         refused=tuple(candidates.refused),
@@ -197,8 +183,8 @@ def _set_ups(candidates: Candidates, choice: Choice, whole: float) -> tuple[SetU
     cell_areas = np.bincount(
         np.array(decomposition_of(choice.surface).vertex_cell) + 1, choice.surface.vertex_areas
     )[1:]
-    segments: dict[int, set[int]] = {number: set() for number in choice.set_ups}
-    covered = dict.fromkeys(choice.set_ups, 0.0)
+    segments: dict[int, set[int]] = {number: set() for number in choice.numbers}
+    covered = dict.fromkeys(choice.numbers, 0.0)
     for cell in choice.solution.cells or ():
         for sub in cell.subcells:
             number = int(names[sub.color].partition(":")[0]) - 1
@@ -206,7 +192,7 @@ def _set_ups(candidates: Candidates, choice: Choice, whole: float) -> tuple[SetU
             covered[number] += float(cell_areas[cell.id]) / len(cell.subcells)
     return tuple(
         _set_up(candidates, number, len(segments[number]), covered[number] / whole)
-        for number in choice.set_ups
+        for number in choice.numbers
     )
 
 

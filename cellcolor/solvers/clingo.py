@@ -7,7 +7,6 @@ It needs the extra ``peers``.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import comb
 from typing import TYPE_CHECKING
 
@@ -19,10 +18,10 @@ from cellcolor.errors import TooLarge
 from cellcolor.files.writing import shipped_folder
 from cellcolor.solvers.interface import Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains, only_loops
-from cellcolor.solvers.peers import Peer
+from cellcolor.solvers.peers import Peer, Search
 
 if TYPE_CHECKING:
-    from clingo import Model, Symbol
+    from clingo import Model
 
 MODEL = shipped_folder() / "models" / "constraints" / "coloring.lp"
 """The answer set program."""
@@ -59,23 +58,19 @@ class ClingoSolver(Peer):
         control.load(str(MODEL))
         control.add("base", [], facts)
         control.ground([("base", [])])
-        found: list[tuple[int, Sequence[Symbol]]] = []
-        bounds = [0]
-
-        def report() -> None:
-            if progress is not None:
-                progress(found[-1][0] if found else None, bounds[-1])
+        heard = Search(instance, deadline, options.seed, progress)
 
         def on_model(model: Model) -> None:
-            found.append((sum(model.cost), model.symbols(shown=True)))
-            report()
+            color: dict[int, int] = {}
+            after: dict[int, int] = {}
+            for symbol in model.symbols(shown=True):
+                first, second = (argument.number for argument in symbol.arguments)
+                (color if symbol.name == "joined" else after)[first] = second
+            heard.found(division_of_chains(instance, color, after))
 
-        def on_unsat(lower: Sequence[int]) -> None:
-            bounds.append(max(bounds[-1], sum(lower)))
-            report()
-
-        complete = False
-        with control.solve(on_model=on_model, on_unsat=on_unsat, async_=True) as search:
+        with control.solve(
+            on_model=on_model, on_unsat=lambda lower: heard.bounded(sum(lower)), async_=True
+        ) as search:
             try:
                 while not search.wait(min(_HEARD_AFTER, deadline.left)) and not deadline.over:
                     pass
@@ -83,19 +78,12 @@ class ClingoSolver(Peer):
                 pass  # a signal ended it early
             finally:
                 search.cancel()
-                complete = bool(search.get().exhausted)
+                if search.get().exhausted:
+                    heard.done()
         program = control.statistics["problem"]["lp"]
         size = ModelSize(int(program["atoms"]), int(program["rules"]))
-        if not found:
-            return Answer(None, (), (Bound("search", bounds[-1], "strands"),), model=size)
-        segments, symbols = found[-1]
-        bound = Bound("search", segments if complete else bounds[-1], "strands")
-        color: dict[int, int] = {}
-        after: dict[int, int] = {}
-        for symbol in symbols:
-            first, second = (argument.number for argument in symbol.arguments)
-            (color if symbol.name == "joined" else after)[first] = second
-        return Answer(division_of_chains(instance, color, after), (), (bound,), model=size)
+        bound = Bound("search", heard.bound, "strands")
+        return Answer(heard.best, (), (bound,), model=size)
 
 
 def asp_facts(instance: Instance) -> str:

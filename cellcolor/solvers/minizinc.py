@@ -113,8 +113,8 @@ class _MiniZinc(ProgramPeer):
     def version(self) -> str:
         return self._known or self.name
 
-    def begin(self, search: Search) -> Started:
-        file = search.folder / "instance.dzn"
+    def begin(self, search: Search, folder: Path) -> Started:
+        file = folder / "instance.dzn"
         file.write_text(minizinc_data(search.instance), encoding="ascii")
         color: dict[int, int] = {}
         after: dict[int, int] = {}

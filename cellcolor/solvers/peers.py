@@ -1,6 +1,6 @@
-"""Solvers of other projects, each run as a program that is killed at the deadline.
+"""Solvers of other projects, most of them run as programs that are killed at the deadline.
 
-They neither keep a time limit to the second nor hear signals while they search; an error of theirs
+These neither keep a time limit to the second nor hear signals while they search; an error of theirs
 ends the process. Such a program prints what it knows at once, and what it has said by then counts.
 """
 
@@ -52,10 +52,9 @@ class Peer:
 
 @dataclass
 class Search:
-    """What a program is given, and what it has said so far.
+    """What a solver is given, and what it has said so far.
 
     Attributes:
-        folder: for the files that it reads.
         known: bounds from before it begins.
         best: the best division, None for none.
         bound: the best bound of its own.
@@ -64,7 +63,6 @@ class Search:
     instance: Instance
     deadline: Deadline
     seed: int
-    folder: Path
     progress: OnProgress | None
     known: tuple[Bound, ...] = ()
     best: Division | None = None
@@ -95,8 +93,8 @@ class ProgramPeer(Peer, ABC):
     proof: ClassVar[str] = "search"  # the kind of its bounds
 
     @abstractmethod
-    def begin(self, search: Search) -> Started:
-        """Write what the program reads."""
+    def begin(self, search: Search, folder: Path) -> Started:
+        """Write what the program reads into a folder."""
 
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
@@ -109,9 +107,9 @@ class ProgramPeer(Peer, ABC):
         deadline = options.deadline.earlier(0.05 * min(options.deadline.left, 10.0))
         # A signal may end this early, as an OutOfTime.
         with tempfile.TemporaryDirectory(prefix="cellcolor-") as place, suppress(OutOfTime):
-            search = Search(instance, deadline, options.seed, Path(place), progress)
-            command, hear = self.begin(search)
-            with Child(command, search.folder) as child:
+            search = Search(instance, deadline, options.seed, progress)
+            command, hear = self.begin(search, Path(place))
+            with Child(command, Path(place)) as child:
                 for line in child.lines(deadline):
                     hear(line)
                 failure = child.failure

@@ -86,8 +86,8 @@ def test_no_choice_has_fewer_set_ups_or_fewer_segments(seed: int, count: int, li
         if not listed:
             patch.setattr(choosing_set_ups, "_MOST_SETS", 0)
         choice = choose(surfaces, 1.0, None, Options())
-    assert len(choice.set_ups) == choice.fewest_set_ups == len(sets[0])
-    assert choice.set_ups in sets
+    assert len(choice.numbers) == choice.fewest_set_ups == len(sets[0])
+    assert choice.numbers in sets
     assert choice.covered_share == pytest.approx(1.0)
     least = min(minimum(graph) for graph in graphs)
     assert choice.solution.segments == least
@@ -106,7 +106,7 @@ def test_at_the_highest_price_segments_still_count(seed: int) -> None:
     priced = choose(surfaces, 1.0, 1_000_000, Options())
     assert in_turn.proved and priced.proved
     assert priced.solution.segments == in_turn.solution.segments
-    assert len(priced.set_ups) == len(in_turn.set_ups) == in_turn.fewest_set_ups
+    assert len(priced.numbers) == len(in_turn.numbers) == in_turn.fewest_set_ups
 
 
 @pytest.fixture(scope="module")

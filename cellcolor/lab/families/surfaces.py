@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import heapq
+from dataclasses import replace
 
 import numpy as np
 
 from cellcolor.arrays import Array
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import NEVER
+from cellcolor.decomposition.borders import Borders
+from cellcolor.decomposition.cells import handles_of, loops_of, pieces_of
 from cellcolor.lab.families.meshes import Topology, crack_paths, grid_faces, make_mesh
 from cellcolor.mesh.triangle_mesh import directed_edges
 
@@ -60,23 +64,26 @@ def voronoi(
         for vertex in disc:
             region[vertex] = len(sets)
         sets.append({int(rng.integers(colors))} if number < islands else set())
-    # No part of a disc, an annulus or a sphere has a handle.
-    while shape in ("torus", "double torus"):
-        found = _cells_with_handles(third, neighbors, [sets[own] for own in region])
-        if not found:
-            break
-        for cell in found:
-            _cut(rng, cell, region, sets, neighbors, colors)
-    vertex_colors = tuple(tuple(sorted(sets[own])) for own in region)
-    return LabelledSurface(
+    surface = LabelledSurface(
         f"voronoi_{shape.replace(' ', '_')}_{seed}",
         tuple(f"c{color}" for color in range(colors)),
         vertices,
         faces,
-        vertex_colors,
-        crack_paths(rng, faces, vertex_colors, cracks, 2 * size),
-        {"family": "voronoi", "seed": seed},
+        _sets_of(region, sets),
+        meta={"family": "voronoi", "seed": seed},
     )
+    # No part of a disc, an annulus or a sphere has a handle.
+    while shape in ("torus", "double torus") and (found := _cells_with_handles(surface)):
+        for cell in found:
+            _cut(rng, cell, region, sets, neighbors, colors)
+        surface = replace(surface, vertex_colors=_sets_of(region, sets))
+    own = crack_paths(rng, faces, surface.vertex_colors, cracks, 2 * size)
+    return replace(surface, cracks=own)
+
+
+def _sets_of(region: Regions, sets: list[set[int]]) -> tuple[tuple[int, ...], ...]:
+    """The colors of each vertex."""
+    return tuple(tuple(sorted(sets[number])) for number in region)
 
 
 def _nearest(rng: np.random.Generator, neighbors: list[list[int]], seeds: list[int]) -> Regions:
@@ -125,44 +132,17 @@ def _reached(
     return sets
 
 
-def _cells_with_handles(
-    third: dict[tuple[int, int], int], neighbors: list[list[int]], sets: list[set[int]]
-) -> list[list[int]]:
-    """The vertices of each cell of a closed mesh that has a handle, cracks left out of account."""
-    owner = [-1] * len(neighbors)
-    cells: list[list[int]] = []
-    for first, colors in enumerate(sets):
-        if owner[first] != -1 or not colors:
-            continue
-        owner[first] = len(cells)
-        cell = [first]
-        for vertex in cell:
-            for other in neighbors[vertex]:
-                if owner[other] == -1 and sets[other] == colors:
-                    owner[other] = len(cells)
-                    cell.append(other)
-        cells.append(cell)
-    # Vertices - edges + triangles of each cell, and 1 for a disc that closes each of its border
-    # loops. By Euler's formula that is 2 for a sphere, so for a cell without handles, else less.
-    euler = [len(cell) for cell in cells]
-    border: list[tuple[int, int]] = []
-    for (a, b), c in third.items():
-        if owner[a] == -1:
-            continue
-        if owner[b] != owner[a]:
-            border.append((a, b))
-        elif a < b:
-            euler[owner[a]] -= 1
-        if a < b and a < c and owner[a] == owner[b] == owner[c]:
-            euler[owner[a]] += 1
-    walked: set[tuple[int, int]] = set()
-    for a, b in border:
-        euler[owner[a]] += (a, b) not in walked
-        while (a, b) not in walked:
-            walked.add((a, b))
-            c = third[a, b]
-            a, b = (c, b) if owner[c] == owner[a] else (a, c)
-    return [cell for cell, number in zip(cells, euler, strict=True) if number != 2]
+def _cells_with_handles(surface: LabelledSurface) -> list[list[int]]:
+    """The vertices of each cell that has a handle."""
+    cell_of, _ = pieces_of(surface, surface.vertex_colors, (), NEVER)
+    borders = Borders(surface, cell_of)
+    loops = loops_of(borders, borders.curves(NEVER), NEVER)
+    genus = handles_of(surface, borders, loops, NEVER)
+    members: dict[int, list[int]] = {cell: [] for cell, handles in genus.items() if handles}
+    for vertex, cell in enumerate(cell_of):
+        if cell in members:
+            members[cell].append(vertex)
+    return list(members.values())
 
 
 def _cut(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import sys
+from pathlib import Path
 from typing import Any
 
 from cellcolor.data.bounds import Bound
@@ -31,11 +32,11 @@ class ChocoSolver(ProgramPeer):
 
     name, package, module, called = "choco", "pychoco", "pychoco", "pychoco"
 
-    def begin(self, search: Search) -> Started:
+    def begin(self, search: Search, folder: Path) -> Started:
         instance, deadline = search.instance, search.deadline
         Problem.of(instance, deadline)  # what cannot be solved is refused here
         search.known = (Bound("strangers", _fewest(instance), "surface"),)
-        file = search.folder / "instance.json"
+        file = folder / "instance.json"
         file.write_text(instance.to_json(), encoding="utf-8")
 
         def hear(line: str) -> None:

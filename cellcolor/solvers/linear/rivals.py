@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 import sys
+from pathlib import Path
 from typing import ClassVar, Literal
 
 from cellcolor.solvers.joined_chains import division_of_chains
@@ -24,9 +25,9 @@ class _Rival(ProgramPeer):
     proof = "model"
     ending: ClassVar[Literal["mps", "wcnf"]] = "mps"  # of the file that it reads
 
-    def begin(self, search: Search) -> Started:
+    def begin(self, search: Search, folder: Path) -> Started:
         coloring = Coloring(search.instance)
-        file = search.folder / f"model.{self.ending}"
+        file = folder / f"model.{self.ending}"
         with file.open("w", encoding="ascii") as stream:
             lines = {"mps": mps, "wcnf": wcnf}[self.ending](coloring.model, search.instance.sha256)
             for line in search.deadline.watch(lines):
