@@ -113,7 +113,7 @@ def render_page(
 
     Args:
         title: one line.
-        data: see :mod:`cellcolor.pictures.viewer.page`; None for a drawing.
+        data: what :func:`picture_data` makes, perhaps with a motion; None for a drawing.
         notes: lines under the legend.
         header: HTML under the title.
         cards: HTML under the picture.
