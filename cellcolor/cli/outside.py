@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -24,11 +24,6 @@ from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, RefusedResult, naming
 from cellcolor.files.writing import Output, check_output, kind_of_format, write
-
-if TYPE_CHECKING:
-    from cellcolor.data.instance import Instance
-    from cellcolor.data.solution import Solution
-    from cellcolor.solvers.portable import OutsideAnswer
 
 _ANSWERED = ("opb", "wcnf", "mps", "dzn", "lp")
 _FORMATS = ("pbtxt", "pb", *_ANSWERED)
@@ -91,37 +86,24 @@ def answer(source: Path, given: Path, kind: str, output: Path) -> Exit:
     from cellcolor.cli.inputs import read_instance
     from cellcolor.data.solution import Solution
     from cellcolor.files.documents import read_text
+    from cellcolor.solvers.checked import checked_solution
+    from cellcolor.solvers.interface import Options
     from cellcolor.solvers.portable import read_answer
 
     inputs = [source, given]
     check_output(output, kind_of_format(Solution.FORMAT), inputs)
     instance = read_instance(source)
     with naming(given):
-        solution = _checked(instance, read_answer(instance, read_text(given), kind), kind)
+        found = read_answer(instance, read_text(given), kind)
+        try:
+            solution = checked_solution(instance, Options(), f"outside ({kind})", found, 0.0)
+        except RefusedResult as error:
+            raise InputError(None, None, f"is not a legal division: {error}") from error
     write([Output.of(output, solution)], inputs)
     say(f"wrote {output}: {count(solution.segments or 0, 'segment')}")
     for note in solution.notes:
         say(note)
     return Exit.DONE
-
-
-def _checked(instance: Instance, found: OutsideAnswer, kind: str) -> Solution:
-    """The solution, seen by the checker, with nothing in it that the answer does not prove."""
-    from cellcolor.data.solution import count_segments
-    from cellcolor.solvers.checked import checked_solution
-    from cellcolor.solvers.interface import Answer, Options
-
-    segments = count_segments(found.division)
-    if found.segments is not None and segments > found.segments:
-        message = f"says {found.segments}, its division has {count(segments, 'segment')}"
-        raise InputError(None, "objective", message)
-    claim = "The external solver claims that no division has fewer segments; this is not a proof."
-    notes = (claim,) if found.claims_optimum else ()
-    answered = Answer(found.division, found.seams, (), notes=notes)
-    try:
-        return checked_solution(instance, Options(), f"outside ({kind})", answered, 0.0)
-    except RefusedResult as error:
-        raise InputError(None, None, f"is not a legal division: {error}") from error
 
 
 @cellcolor.command(name="import")

@@ -115,8 +115,9 @@ def _check_able(search: dict[str, Any], every: bool) -> None:
     What every solver can do is not asked about: bad input has to import no solver.
     """
     options = Options(search.get("search_space", "paper"), search.get("strands"))  # type: ignore[arg-type]
-    if search["solver"] not in (known := solver_names()):
-        raise click.BadParameter(f"is none of {', '.join(known)}", param_hint="--solver")
+    if (solver := search["solver"]) not in (known := solver_names()):
+        message = f"{solver!r} is not one of {', '.join(known)}"
+        raise click.BadParameter(message, param_hint="--solver")
     if every or options.search_space != "paper":
         from cellcolor.solvers.checked import check_able
 

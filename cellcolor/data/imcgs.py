@@ -7,7 +7,6 @@ cell, and the two cells beside each edge. These two statements have to agree.
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike
 from typing import NamedTuple
@@ -93,21 +92,25 @@ def _parsed(
         )
     loops, colors = lines[1 : 1 + 2 * cell_count : 2], lines[2 : 1 + 2 * cell_count : 2]
     sides = _sides(lines[1 + 2 * cell_count :], corrections, cell_count)
-    holders = _holders(loops, edge_count)
-    for edge, (line, cells) in enumerate(sides):
-        if sorted(holders[edge]) != sorted(cell for cell in cells if cell != OUTSIDE):
+    holders, darts = _walked(loops, edge_count)
+    for edge, (line, beside) in enumerate(sides):
+        if sorted(holders[edge]) != sorted(cell for cell in beside if cell != OUTSIDE):
             raise line.wrong(
-                f"edge {edge} lies between {cells[0]} and {cells[1]} here, "
+                f"edge {edge} lies between {beside[0]} and {beside[1]} here, "
                 f"but in the lists of cells: {listed(holders[edge])}"
             )
     for line in colors:
         if len(set(line.values)) < len(line.values) or min(line.values) < 0:
             raise line.wrong("colors must be different numbers from 0 on")
     names = sorted({color for line in colors for color in line.values})
+    cells = tuple(
+        Cell(cell, tuple(names.index(name) for name in line.values), (tuple(darts[cell]),))
+        for cell, line in enumerate(colors)
+    )
     edges = tuple(
         Edge(edge + 1, holders[edge][0], (*holders[edge], OUTSIDE)[1]) for edge in range(edge_count)
     )
-    return _cells(loops, colors, names), edges, tuple(f"c{name}" for name in names)
+    return cells, edges, tuple(f"c{name}" for name in names)
 
 
 def _lines(text: str) -> Iterable[_Line]:
@@ -142,28 +145,17 @@ def _sides(
     return found
 
 
-def _holders(loops: Sequence[_Line], edge_count: int) -> list[list[int]]:
-    """For each edge the cells whose lists contain it, in the order of the cells."""
+def _walked(loops: Sequence[_Line], edge_count: int) -> tuple[list[list[int]], list[list[int]]]:
+    """For each edge the cells whose lists contain it, in their order; and the darts of each cell.
+
+    Where an edge appears first in the lists is its left side, then its right.
+    """
     holders: list[list[int]] = [[] for _ in range(edge_count)]
+    darts: list[list[int]] = [[] for _ in loops]
     for cell, line in enumerate(loops):
         for edge in line.values:
             if not 0 <= edge < edge_count:
                 raise line.wrong(f"cell {cell} has an edge {edge}, which does not exist")
             holders[edge].append(cell)
-    return holders
-
-
-def _cells(
-    loops: Sequence[_Line], colors: Sequence[_Line], names: Sequence[int]
-) -> tuple[Cell, ...]:
-    """The cells; where an edge appears first in the lists is its left side, then its right."""
-    color_of = {name: color for color, name in enumerate(names)}
-    seen: Counter[int] = Counter()
-    cells = []
-    for cell, (loop, own) in enumerate(zip(loops, colors, strict=True)):
-        darts = []
-        for edge in loop.values:
-            seen[edge] += 1
-            darts.append(edge + 1 if seen[edge] == 1 else -edge - 1)
-        cells.append(Cell(cell, tuple(color_of[name] for name in own.values), (tuple(darts),)))
-    return tuple(cells)
+            darts[cell].append(edge + 1 if len(holders[edge]) == 1 else -edge - 1)
+    return holders, darts

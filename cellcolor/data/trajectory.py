@@ -208,7 +208,8 @@ class TrajectoryTable:
 
     def marked(self, title: str) -> Mask:
         """Where (k,) a column is 1; nowhere without it."""
-        return self.columns.get(title, np.zeros(len(self.columns["contact"]))) == 1
+        none = np.zeros(len(self.columns["contact"]))
+        return np.asarray(self.columns.get(title, none) == 1)
 
 
 def read_trajectory_csv(path: str | PathLike[str]) -> TrajectoryTable:

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from math import pi
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from cellcolor.data.wording import check_share, listed
@@ -29,7 +28,6 @@ from cellcolor.solvers.interface import Options
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene
     from cellcolor.frontend.build import StageClock
-    from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.motion.plan import MotionPlan
     from cellcolor.pictures.report_page.content import AnsweredScene, Answers
 
@@ -87,7 +85,7 @@ def plan(
     require_motion("planning a motion", _NEEDED)
     given = scene_of(scene)
     find_pattern(pattern or DEFAULT_PATTERN)
-    from cellcolor.frontend.build import StageClock
+    from cellcolor.frontend.build import StageClock, build_prepared
     from cellcolor.frontend.prepared import prepare
     from cellcolor.motion.limits import home_of, motion_of
 
@@ -98,7 +96,10 @@ def plan(
         home_of(prepared, motion_of(prepared))
         controller_base(prepared)
     with clock.timed("colors"):
-        whole = _built(prepared, given.file, StageClock(deadline, progress))
+        built = build_prepared(prepared, StageClock(deadline, progress))
+        whole = Subject(given.file, built)
+        if whole.graph(deadline).nothing_to_cover:
+            raise NothingCovered(built.report, prepared.scene.file)
     run = _Run(whole, pattern or DEFAULT_PATTERN, clock, progress)
     try:
         planned = run.planned(cover, left_alone)
@@ -242,17 +243,6 @@ def _with_motion(scene: Scene, changes: Mapping[str, Any]) -> Scene:
         # Both keep the names of their files: the labelled surface says what it was built from.
         setup = scene.setup.varied(motion=dict(changes), file=scene.setup.file)
         return scene.varied(setup=setup, file=scene.file)
-
-
-def _built(prepared: PreparedScene, path: Path | None, clock: StageClock) -> Subject:
-    """The scene, built."""
-    from cellcolor.frontend.build import build_prepared
-
-    built = build_prepared(prepared, clock)
-    subject = Subject(path, built)
-    if subject.graph(clock.deadline).nothing_to_cover:
-        raise NothingCovered(built.report, prepared.scene.file)
-    return subject
 
 
 def _answered(

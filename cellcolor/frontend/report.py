@@ -8,7 +8,7 @@ wound the wrong way would change.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import igl
@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array, unit
 from cellcolor.data.wording import count
 from cellcolor.frontend.parts.cover import spread
-from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.colors import LimitColors
 from cellcolor.frontend.reach.slivers import SliverReport
@@ -257,35 +256,28 @@ class Survey:
 
 def survey_of(prepared: PreparedScene) -> Survey:
     """Measure the surface of a scene where it stands."""
+    vertices, mesh = prepared.surface.vertices, prepared.surface.mesh
     base = prepared.robot.base_frame(None)[:3, 3]
-    found = survey(prepared.surface, prepared.arm.kinematics.viewpoints, base)
+    squared = igl.point_mesh_squared_distance(base[None], vertices, prepared.surface.faces)[0]
+    viewpoints = prepared.arm.kinematics.viewpoints
     gravity = np.array(prepared.setup.task.gravity_m_per_s2)
-    solid = TriangleMesh(prepared.own_body.vertices, prepared.own_body.faces)
-    if not solid.border.any() or not gravity.any():
-        return found
-    mesh = prepared.surface.mesh
-    down = mesh.triangle_normals @ unit(gravity) > _DOWN
-    return replace(found, facing_down=float(mesh.areas[down].sum() / mesh.areas.sum()))
-
-
-def survey(surface: Surface, viewpoints: Array, base: Array) -> Survey:
-    """Measure the placed surface, all in the world, m.
-
-    Args:
-        viewpoints: (v, 3) from where it is seen.
-        base: (3,) where the robot's base stands.
-    """
-    vertices, faces, mesh = surface.vertices, surface.faces, surface.mesh
-    squared = igl.point_mesh_squared_distance(base[None], vertices, faces)[0]
+    solid, down = TriangleMesh(prepared.own_body.vertices, prepared.own_body.faces), 0.0
+    if solid.border.any() and gravity.any():
+        down = mesh.areas[mesh.triangle_normals @ unit(gravity) > _DOWN].sum() / mesh.areas.sum()
     return Survey(
         tuple((vertices.max(axis=0) - vertices.min(axis=0)).tolist()),
         float(np.sqrt(squared[0])),
-        _from_behind(mesh, viewpoints) if mesh.border.any() else 0.0,
+        from_behind(mesh, viewpoints) if mesh.border.any() else 0.0,
+        float(down),
     )
 
 
-def _from_behind(mesh: TriangleMesh, viewpoints: Array) -> float:
-    """The share of the visible points that are seen only from behind."""
+def from_behind(mesh: TriangleMesh, viewpoints: Array) -> float:
+    """The share of the visible points that are seen only from behind.
+
+    Args:
+        viewpoints: (v, 3) from where it is seen, in the world, m.
+    """
     points, face = spread(mesh, _POINTS)
     tree = igl.AABB()
     tree.init(mesh.points, mesh.corners)

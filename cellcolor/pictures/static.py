@@ -8,7 +8,6 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -55,7 +54,6 @@ def render(picture: Picture2D | Picture3D, kind: str) -> bytes:
     """
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(11, 7), dpi=150)
-        FigureCanvasAgg(figure)
         axes = figure.add_axes((0.01, 0.02, 0.62, 0.91))
         _draw(axes, picture)
         figure.suptitle(picture.title, x=0.02, ha="left", fontsize=12)
@@ -67,7 +65,6 @@ def render_drawing(picture: Picture2D) -> bytes:
     """An SVG of the drawing alone, for a page that has title, legend and notes itself."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7, 7))
-        FigureCanvasAgg(figure)
         _draw(figure.add_axes((0.0, 0.0, 1.0, 1.0)), picture)
         return saved(figure, "svg")
 
@@ -268,7 +265,6 @@ def render_placements(found: Placements, kind: str) -> bytes:
     ]
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9, 6), dpi=150, layout="constrained")
-        FigureCanvasAgg(figure)
         axes = figure.subplots()
         drawn = set()
         for row, pose in zip(rows, poses, strict=True):

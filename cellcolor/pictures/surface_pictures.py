@@ -67,10 +67,7 @@ def draw_color(surface: LabelledSurface, color: int) -> Picture3D:
         surface,
         f"{surface.name}: color {color}, {name}",
         np.array(labels, dtype=np.int64),
-        [
-            VertexClass(name, fill_of(surface, [color])),
-            VertexClass("other colors only", OTHERS),
-        ],
+        [VertexClass(name, fill_of(surface, [color])), VertexClass("other colors only", OTHERS)],
     )
     cracks = [pair for pair, colors in surface.crack_colors.items() if color in colors]
     notes = ("Shares of the surface. Cracks are those of this color.",)
@@ -107,13 +104,10 @@ def draw_segments(
         labels[np.isin(cells, divided)] = segments
     color = {sub.segment: sub.color for cell in solution.cells or () for sub in cell.subcells}
     share = shares_of(instance, solution)
+    plain = segment_classes(surface, [color[number] for number in range(segments)])
     classes = [
         replace(one, name=f"{one.name}, {percent(*own)}")
-        for one, own in zip(
-            segment_classes(surface, [color[number] for number in range(segments)]),
-            share.segments,
-            strict=True,
-        )
+        for one, own in zip(plain, share.segments, strict=True)
     ]
     classes.append(VertexClass("cut between segments", CUT))
     notes = [
@@ -165,14 +159,10 @@ def draw_plan(surface: LabelledSurface, plan: Plan, marked: tuple[int, ...] = ()
         faults = list(dict.fromkeys(fault.vertex for fault in report.violations))
         labels = np.zeros(len(surface.vertices), dtype=np.int64)
         labels[faults] = 1
-        classes = [
-            VertexClass("nothing wrong", OTHERS),
-            VertexClass("wrong color, or none", WARNING),
-        ]
         view = SurfaceView(
             f"{surface.name}: no valid plan, {count(len(faults), 'vertex', 'vertices')} wrong",
             labels,
-            classes,
+            [VertexClass("nothing wrong", OTHERS), VertexClass("wrong color, or none", WARNING)],
             cracks=surface.crack_colors,
             marked=faults[:_MOST_MARKED],
         )
@@ -180,15 +170,8 @@ def draw_plan(surface: LabelledSurface, plan: Plan, marked: tuple[int, ...] = ()
     own = np.array(report.segment_of, dtype=np.int64)
     view = _of_plan(surface, plan, own, report.segments)
     notes = ["A plan: one color per vertex. Shares of the surface.", *surface_notes(surface)]
-    return draw_surface(
-        surface,
-        replace(
-            view,
-            cracks=surface.crack_colors,
-            notes=tuple(notes),
-            marked=marked,
-        ),
-    )
+    view = replace(view, cracks=surface.crack_colors, notes=tuple(notes), marked=marked)
+    return draw_surface(surface, view)
 
 
 def _of_plan(surface: LabelledSurface, plan: Plan, segment_of: Index, segments: int) -> SurfaceView:

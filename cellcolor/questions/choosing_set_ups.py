@@ -14,11 +14,11 @@ not.
 
 from __future__ import annotations
 
-import heapq
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
 from math import ceil, inf
+from operator import attrgetter
 
 import numpy as np
 from ortools.sat.python import cp_model
@@ -77,27 +77,23 @@ def choose(
         masters = [_Master(asked, set_ups, extra) for set_ups in sets]
     best: Choice | None = None
     cost, tried = inf, 0
-    queue = [(0, place) for place in range(len(masters))]  # by what each costs at least
+    cheapest = attrgetter("least")
     try:
-        while queue[0][0] < cost:
-            least, place = queue[0]
-            chosen = masters[place].next_choice()
-            if masters[place].least > least:  # perhaps another one looks better now
-                heapq.heapreplace(queue, (masters[place].least, place))
-                if queue[0][0] < masters[place].least:
-                    continue
-            if masters[place].least >= cost:
+        while (master := min(masters, key=cheapest)).least < cost:
+            chosen = master.next_choice()
+            least = min(masters, key=cheapest).least
+            if master.least > least or least >= cost:  # another one looks better now, or none
                 continue
-            if chosen in masters[place].tried or not asked.everything:
+            if chosen in master.tried or not asked.everything:
                 # Its regions alone are not enough, or not what has to be covered: all of the same
                 # set-ups.
                 chosen = asked.regions_of({asked.regions[one].set_up for one in chosen})
-                if chosen in masters[place].tried:  # no solver knows better
+                if chosen in master.tried:  # no solver knows better
                     break
             tried += 1
-            report(f"choice {tried}, at least {queue[0][0] / _UNIT:g}")
+            report(f"choice {tried}, at least {least / _UNIT:g}")
             solved, needed = asked.solved(chosen)
-            masters[place].learn(chosen, needed)
+            master.learn(chosen, needed)
             if solved is not None:
                 own = _UNIT * (solved.solution.segments or 0) + extra * len(solved.numbers)
                 if own < cost:
@@ -107,8 +103,9 @@ def choose(
             raise
     if best is None:
         raise OutOfTime
-    proved = queue[0][0] >= cost
-    least = queue[0][0] - extra * len(best.numbers)
+    least = min(masters, key=cheapest).least
+    proved = least >= cost
+    least -= extra * len(best.numbers)
     return replace(
         best,
         fewest_set_ups=fewest,

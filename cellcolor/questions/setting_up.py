@@ -83,37 +83,43 @@ def candidates_of(
     """
     report = progress or (lambda _: None)
     found = Candidates()
-    for given in scenes:
-        prepared: PreparedScene | None = None
-        for pose in dict.fromkeys((pose_of(given.placement), *poses)):
-            report(f"set-up {len(found.scenes) + len(found.refused) + 1}")
-            placement = Placement(position_m=pose[:3], rpy_rad=pose[3:])
-            try:
-                if prepared is None:
-                    prepared = prepare(given.varied(placement=placement, file=given.file), deadline)
-                surface = _built(prepared.at(given.varied(placement=placement)), deadline)
-            except OutOfTime:
-                if not found.scenes:
-                    raise
-                places = [{pose_of(one.placement), *poses} for one in scenes]
-                found.left = sum(map(len, places)) - len(found.scenes) - len(found.refused)
-                return found
-            except InputError as error:
-                own_place = pose == pose_of(given.placement)
-                named = (given is not scenes[0]) if own_place else (by_hand and len(scenes) == 1)
-                misplaced = (error.field or "").startswith("placement")
-                if prepared is None and not misplaced:
-                    raise
-                if named and misplaced and not stops:
-                    message = f"{_in_words(pose)} is no set-up: {error.message}"
-                    raise InputError(given.file, "placement", message) from error
-                stop = f" with {positions_in_words(fixed)}" if (fixed := _fixed(given)) else ""
-                found.refused.append(f"{given.name} at {_in_words(pose)}{stop}: {error.message}")
-                continue
-            if found.surfaces:
-                _check_same_part(found.surfaces[0], prepared)
-            found.scenes.append(prepared.scene.varied(placement=placement, file=given.file))
-            found.surfaces.append(surface)
+    places = [
+        (scene, pose)
+        for scene in scenes
+        for pose in dict.fromkeys((pose_of(scene.placement), *poses))
+    ]
+    prepared: PreparedScene | None = None
+    for number, (given, pose) in enumerate(places):
+        report(f"set-up {number + 1}")
+        own_place = pose == pose_of(given.placement)
+        if own_place:  # the first one of this scene
+            prepared = None
+        placement = Placement(position_m=pose[:3], rpy_rad=pose[3:])
+        there = given.varied(placement=placement, file=given.file)
+        try:
+            prepared = prepared or prepare(there, deadline)
+            surface = _built(prepared.at(there), deadline)
+        except OutOfTime:
+            if not found.scenes:
+                raise
+            found.left = len(places) - number
+            return found
+        except InputError as error:
+            named = (given is not scenes[0]) if own_place else (by_hand and len(scenes) == 1)
+            misplaced = (error.field or "").startswith("placement")
+            if prepared is None and not misplaced:
+                raise
+            if named and misplaced and not stops:
+                file = None if given.file is None else str(given.file)
+                message = f"{_in_words(pose)} is no set-up: {error.message}"
+                raise InputError(file, "placement", message) from error
+            stop = f" with {positions_in_words(fixed)}" if (fixed := _fixed(given)) else ""
+            found.refused.append(f"{given.name} at {_in_words(pose)}{stop}: {error.message}")
+            continue
+        if found.surfaces:
+            _check_same_part(found.surfaces[0], prepared)
+        found.scenes.append(prepared.scene.varied(placement=placement, file=given.file))
+        found.surfaces.append(surface)
     if not found.scenes:
         raise InputError(None, None, f"no set-up can be used; {found.refused[0]}")
     return found

@@ -7,6 +7,8 @@ It needs the extra ``peers``.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from contextlib import suppress
 from math import comb
 from typing import TYPE_CHECKING
 
@@ -68,14 +70,17 @@ class ClingoSolver(Peer):
                 (color if symbol.name == "joined" else after)[first] = second
             heard.found(division_of_chains(instance, color, after))
 
-        with control.solve(
-            on_model=on_model, on_unsat=lambda lower: heard.bounded(sum(lower)), async_=True
-        ) as search:
+        def on_unsat(lower: Sequence[int]) -> None:
+            heard.bounded(sum(lower))
+
+        # A signal may end this early, as an OutOfTime.
+        with (
+            suppress(OutOfTime),
+            control.solve(on_model=on_model, on_unsat=on_unsat, async_=True) as search,
+        ):
             try:
                 while not search.wait(min(_HEARD_AFTER, deadline.left)) and not deadline.over:
                     pass
-            except OutOfTime:
-                pass  # a signal ended it early
             finally:
                 search.cancel()
                 if search.get().exhausted:

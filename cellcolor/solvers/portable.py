@@ -10,10 +10,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division, Seam
+from cellcolor.data.solution import count_segments
+from cellcolor.data.wording import count
 from cellcolor.errors import InputError
 from cellcolor.files.writing import FileKind
 from cellcolor.solvers.clingo import asp_facts
+from cellcolor.solvers.interface import Answer
 from cellcolor.solvers.joined_chains import division_of_chains
 from cellcolor.solvers.linear.coloring import Coloring, joined_and_linked, require_solution
 from cellcolor.solvers.linear.model import Model, mps, opb, wcnf
@@ -93,35 +95,24 @@ PORTABLE = {
 
 
 @dataclass(frozen=True, slots=True)
-class OutsideAnswer:
-    """A solver's answer, before the checker has seen it.
-
-    Attributes:
-        division: the one that it describes.
-        seams: what its darts refer to.
-        segments: how many the answer says there are; None if it does not.
-        claims_optimum: it says that there are no fewer; this has not been verified.
-    """
-
-    division: Division
-    seams: tuple[Seam, ...]
-    segments: int | None
-    claims_optimum: bool
-
-
-@dataclass(frozen=True, slots=True)
 class _Parsed:
+    """What an answer says: also how many segments there are, None if it does not, and whether it
+    says that there are no fewer."""
+
     color: dict[int, int]
     after: dict[int, int]
     segments: int | None
     claims_optimum: bool
 
 
-def read_answer(instance: Instance, text: str, kind: str) -> OutsideAnswer:
-    """The best division of an answer, of a kind in ``ANSWERS``, to an instance that was exported.
+def read_answer(instance: Instance, text: str, kind: str) -> Answer:
+    """The best division in a text of a kind in ``ANSWERS``, about an instance that was exported.
+
+    The checker has not seen it. What the text claims besides is not verified: it proves no bound.
 
     Raises:
-        InputError: there is no solution in it, or it is not one of this instance's model.
+        InputError: there is no solution in it, or it is not one of this instance's model, or has
+            more segments than it says.
         TooLarge: the instance's model is too large to be compared with the answer.
     """
     seamed = Seamed(instance)
@@ -130,7 +121,12 @@ def read_answer(instance: Instance, text: str, kind: str) -> OutsideAnswer:
     division = division_of_chains(seamed.instance, parsed.color, parsed.after)
     if seamed.seams:
         division = seamed.division(division)
-    return OutsideAnswer(division, seamed.seams, parsed.segments, parsed.claims_optimum)
+    segments = count_segments(division)
+    if parsed.segments is not None and segments > parsed.segments:
+        message = f"says {parsed.segments}, its division has {count(segments, 'segment')}"
+        raise InputError(None, "objective", message)
+    claim = "The external solver claims that no division has fewer segments; this is not a proof."
+    return Answer(division, seamed.seams, (), (claim,) if parsed.claims_optimum else ())
 
 
 def _opb(instance: Instance, text: str) -> _Parsed:
@@ -142,7 +138,7 @@ def _opb(instance: Instance, text: str) -> _Parsed:
         if not found:
             raise InputError(None, "v", f"{word!r} is not a literal such as x1 or -x1")
         values[int(found[2])] = not found[1]
-    return _of_values(instance, values, _objective(text), _says_optimum(text))
+    return _of_competition(instance, values, text)
 
 
 def _wcnf(instance: Instance, text: str) -> _Parsed:
@@ -154,7 +150,7 @@ def _wcnf(instance: Instance, text: str) -> _Parsed:
         if not all(re.fullmatch(r"-?\d+", word) for word in words):
             raise InputError(None, "v", "must be bits, or literals such as 1 and -1")
         values = {abs(int(word)): int(word) > 0 for word in words if int(word)}
-    return _of_values(instance, values, _objective(text), _says_optimum(text))
+    return _of_competition(instance, values, text)
 
 
 def _sol(instance: Instance, text: str) -> _Parsed:
@@ -223,13 +219,11 @@ def _value_lines(text: str) -> list[str]:
     return [line[1:] for line in runs[-1].splitlines()]
 
 
-def _objective(text: str) -> int | None:
+def _of_competition(instance: Instance, values: dict[int, bool], text: str) -> _Parsed:
+    """With the last line ``o N``."""
     given = re.findall(r"^o (\d+)\s*$", text, re.MULTILINE)
-    return int(given[-1]) if given else None
-
-
-def _says_optimum(text: str) -> bool:
-    return bool(re.search(r"^s OPTIMUM FOUND\s*$", text, re.MULTILINE))
+    done = re.search(r"^s OPTIMUM FOUND\s*$", text, re.MULTILINE)
+    return _of_values(instance, values, int(given[-1]) if given else None, bool(done))
 
 
 def _of_values(

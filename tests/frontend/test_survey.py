@@ -16,10 +16,10 @@ from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import UrKinematics
 from cellcolor.frontend.parts.placement import Placement
-from cellcolor.frontend.parts.shapes import CapObject, RectangleObject
+from cellcolor.frontend.parts.shapes import CapObject
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.report import survey, survey_of
+from cellcolor.frontend.report import Survey, from_behind, survey_of
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Setup
 from examples import examples
@@ -38,11 +38,8 @@ def turned_over(surface: Surface) -> Surface:
 @pytest.mark.parametrize(
     ("scale", "text"), [(0.001, "0.002 x 0.004 x 0 m"), (100.0, "200 x 400 x 0 m")]
 )
-def test_a_wrong_unit_is_seen(scale: float, text: str, arm: UrKinematics) -> None:
-    plate = RectangleObject(
-        size_x_m=2.0 * scale, size_y_m=4.0 * scale, target_vertices=50
-    ).surface()
-    assert str(survey(plate, arm.viewpoints, np.zeros(3))).startswith(text)
+def test_a_wrong_unit_is_seen(scale: float, text: str) -> None:
+    assert str(Survey((2.0 * scale, 4.0 * scale, 0.0), 1.0, 0.0)).startswith(text)
 
 
 @given(
@@ -67,8 +64,9 @@ def test_domes_before_the_robot(
     position = (away * np.cos(around), away * np.sin(around), height - radius * np.cos(half_angle))
     part = CapObject(radius_m=radius, half_angle_rad=half_angle, target_vertices=target)
     dome = part.surface().placed(Placement(position_m=position, rpy_rad=(0.0, 0.0, 0.0)))
-    assert survey(dome, arm.viewpoints, np.zeros(3)).from_behind < 0.1
-    (warning,) = survey(turned_over(dome), arm.viewpoints, np.zeros(3)).warnings
+    assert from_behind(dome.mesh, arm.viewpoints) < 0.1
+    over = from_behind(turned_over(dome).mesh, arm.viewpoints)
+    (warning,) = Survey((1.0, 1.0, 1.0), 1.0, over).warnings
     assert "from behind" in warning
 
 

@@ -24,7 +24,7 @@ from cellcolor.pictures.report_page.content import MotionReport
 from cellcolor.pictures.report_page.motion_data import OFF, OFF_SHARE, frames_of
 from cellcolor.pictures.report_page.page import render_report
 
-HOSTILE = "</script><b>&\"'{{DATA}}"
+HOSTILE = "</script><b>&\"'$DATA"
 
 
 def report(**changes: object) -> MotionReport:
@@ -82,7 +82,7 @@ def test_texts_stay_texts() -> None:
     odd = replace(made.trajectory, name=HOSTILE)
     page = render_report(report(trajectory=odd, verdict=verdict)).decode()
     assert "<b>" not in page
-    assert page.count("&lt;/script&gt;&lt;b&gt;&amp;&quot;&#x27;{{DATA}}") == 3
+    assert page.count("&lt;/script&gt;&lt;b&gt;&amp;&quot;&#x27;$DATA") == 3
     assert len(page_data(page)["motion"]["names"]) == 6
 
 

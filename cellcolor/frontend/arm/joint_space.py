@@ -11,9 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
-
-_CIRCLE = 2 * np.pi
-_ROUNDING = 1e-9  # rad or m; a position on its limit is inside
+from cellcolor.configurations.matching import CIRCLE, ROUNDING, shorter_way
 
 
 @dataclass(frozen=True)
@@ -39,7 +37,7 @@ class JointSpace:
     @property
     def period(self) -> Array:
         """(joints,) after how much a joint is in the same position again; 0 for a slide."""
-        return np.where(self.slides, 0.0, _CIRCLE)
+        return np.where(self.slides, 0.0, CIRCLE)
 
     @property
     def limits(self) -> tuple[Array, Array]:
@@ -48,8 +46,7 @@ class JointSpace:
 
     def step(self, first: Array, second: Array) -> Array:
         """The shortest way (..., joints) from one configuration to another one."""
-        way = np.remainder(second - first + np.pi, _CIRCLE) - np.pi
-        return np.where(self.slides, second - first, way)
+        return shorter_way(first, second, np.where(self.slides, np.inf, CIRCLE))
 
     def unwrap(self, path: Array) -> Array:
         """The same positions (k, joints), each the nearest to the one before it."""
@@ -57,7 +54,7 @@ class JointSpace:
 
     def periods(self, way: Array) -> Array:
         """The whole numbers of periods (..., joints) that are nearest to a way; 0 for a slide."""
-        return np.where(self.slides, 0.0, np.rint(way / _CIRCLE))
+        return np.where(self.slides, 0.0, np.rint(way / CIRCLE))
 
     def largest(self, way: Array) -> Array:
         """The largest movement of a joint (...,) on a way (..., joints), in its units."""
@@ -77,13 +74,13 @@ class JointSpace:
         lowest, highest = path.min(axis=0), path.max(axis=0)
         choices = []
         for joint, (least, most) in enumerate(zip(lowest, highest, strict=True)):
-            low, high = self.lower[joint] - _ROUNDING, self.upper[joint] + _ROUNDING
+            low, high = self.lower[joint] - ROUNDING, self.upper[joint] + ROUNDING
             if self.slides[joint]:
                 choices.append(np.arange(int(low <= least and most <= high)))
                 continue
-            middle = -np.rint((least + most) / 2 / _CIRCLE)
-            first = np.ceil((low - least) / _CIRCLE) if np.isfinite(low) else middle
-            last = np.floor((high - most) / _CIRCLE) if np.isfinite(high) else middle
+            middle = -np.rint((least + most) / 2 / CIRCLE)
+            first = np.ceil((low - least) / CIRCLE) if np.isfinite(low) else middle
+            last = np.floor((high - most) / CIRCLE) if np.isfinite(high) else middle
             choices.append(np.arange(int(first), int(last) + 1))
         return tuple(choices)
 

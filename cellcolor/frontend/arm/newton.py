@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, Mask
+from cellcolor.configurations.matching import farthest as largest_turn
 from cellcolor.frontend.arm.kinematics import TASK_JOINTS, Poses, forward, task_jacobian
 from cellcolor.frontend.arm.robot import Robot, TaskSpace
 from cellcolor.frontend.arm.signs import BRANCHES, Signs
@@ -109,15 +110,9 @@ def nearest(solutions: Array, others: Array) -> Array:
     """
     found = np.full(solutions.shape[:2], np.inf)
     for other in range(others.shape[1]):
-        off = solutions[:, :, :TASK_JOINTS] - others[:, other, None, :TASK_JOINTS]
-        found = np.fmin(found, _largest_turn(off))
+        there = others[:, other, None, :TASK_JOINTS]
+        found = np.fmin(found, largest_turn(there, solutions[:, :, :TASK_JOINTS]))
     return found
-
-
-def _largest_turn(angles: Array) -> Array:
-    """The largest of the last axis, absolute and modulo full circles."""
-    largest: Array = np.abs(np.remainder(angles + np.pi, 2 * np.pi) - np.pi).max(axis=-1)
-    return largest
 
 
 def merged(solutions: Array) -> Array:
@@ -131,7 +126,7 @@ def merged(solutions: Array) -> Array:
     for rows in chunks(len(packed), packed.shape[1]):
         five, own = packed[rows, :, :TASK_JOINTS], kept[rows]
         for later in range(1, five.shape[1]):
-            off = _largest_turn(five[:, :later] - five[:, later : later + 1])
+            off = largest_turn(five[:, later : later + 1], five[:, :later])
             own[:, later] &= ~((off < SAME) & own[:, :later]).any(axis=1)
     return _packed(packed, kept)
 

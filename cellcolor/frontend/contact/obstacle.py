@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 import trimesh
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
@@ -146,7 +146,6 @@ class HalfSpaceObstacle(Obstacle):
 
 _FARTHEST = 30_000  # a cell's number may be at most so far from 0; an octree has 2^15
 _MOST_SIDES = 375_000  # with two triangles each; as many as a mesh of 250,000 vertices has at most
-_SIDES = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]])
 
 
 class BoxGridObstacle(Obstacle):
@@ -190,43 +189,26 @@ class BoxGridObstacle(Obstacle):
     def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shell:
         """The sides of cells that have no cell beyond them, each as two triangles."""
         cells = self.cells(folder, deadline)
-        outer = _outer_sides(cells)
-        if outer.sum() > _MOST_SIDES:
+        cube = trimesh.creation.box(bounds=[(0, 0, 0), (1, 1, 1)])
+        low = cells.min(axis=0) - 1
+        size = cells.max(axis=0) - low + 2
+        key = np.array([size[1] * size[2], size[2], 1])
+        own = (cells - low) @ key
+        beyond = own[:, None] + cube.face_normals.round().astype(np.int64) @ key
+        cell, face = np.nonzero(np.isin(beyond, own, invert=True))
+        if len(cell) > 2 * _MOST_SIDES:
             message = (
-                f"the cells have {outer.sum():,} sides to the outside, at most {_MOST_SIDES:,} fit:"
-                " take larger cells"
+                f"the cells have {len(cell) // 2:,} sides to the outside, at most {_MOST_SIDES:,} "
+                "fit: take larger cells"
             )
             raise InputError(str(folder / self.file), None, message)
-        corners = np.concatenate(
-            [_side(cells[outer[:, side]], normal) for side, normal in enumerate(_SIDES)]
-        )
+        corners = cells[cell][:, None] + cube.vertices[cube.faces[face]].astype(np.int64)
         places, number = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
-        a, b, c, d = number.reshape(-1, 4).T
-        faces = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
-        return places * self.cell_m, faces.astype(np.int64)
+        return places * self.cell_m, number.reshape(-1, 3)
 
     def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Shape:
         corners = np.asarray(self.cells(folder, deadline) * self.cell_m, dtype=np.float64)
         return self.standing(Shape("cells", (self.cell_m,), vertices=corners))
-
-
-def _outer_sides(cells: Index) -> Mask:
-    """Which of the six sides of cells (k, 3) have no cell beyond them, (k, 6)."""
-    low = cells.min(axis=0) - 1
-    size = cells.max(axis=0) - low + 2
-    key = np.array([size[1] * size[2], size[2], 1])
-    own = (cells - low) @ key
-    beyond = own[:, None] + _SIDES @ key
-    return np.asarray(np.isin(beyond, own, invert=True))
-
-
-def _side(cells: Index, normal: Index) -> Index:
-    """Corners (k, 4, 3) of one side of cells (k, 3), counter-clockwise as seen from outside."""
-    axis = int(np.argmax(np.abs(normal)))
-    u, v = np.eye(3, dtype=np.int64)[[(axis + 1) % 3, (axis + 2) % 3]]
-    first = np.eye(3, dtype=np.int64)[axis] * (normal[axis] > 0)
-    corners = np.array([first, first + u, first + u + v, first + v])
-    return np.asarray(cells[:, None] + (corners if normal[axis] > 0 else corners[::-1]))
 
 
 OBSTACLES: Registry[Obstacle] = Registry(

@@ -88,6 +88,7 @@ def _front_view(
     left = set(point.left_out)
     kept = [cell.id for cell in decomposition.instance.cells if cell.id not in left]
     of_cell = np.full(len(decomposition.instance.cells) + 1, left_out)
+    of_cell[OUTSIDE] = OUTSIDE
     colors: dict[int, int] = {}
     for division in point.solution.cells or ():
         own = {sub.segment for sub in division.subcells}
@@ -96,8 +97,7 @@ def _front_view(
     classes = segment_classes(surface, [colors.get(number) for number in range(segments)])
     classes.append(VertexClass("divided between segments", CUT))
     classes.append(VertexClass("left out", WARNING))
-    cells = np.array(decomposition.vertex_cell, dtype=np.int64)
-    labels = np.where(cells == OUTSIDE, OUTSIDE, of_cell[cells])
+    labels = of_cell[np.array(decomposition.vertex_cell, dtype=np.int64)]
     return with_shares(surface, point.in_short, labels, classes)
 
 

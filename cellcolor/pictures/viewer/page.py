@@ -7,6 +7,7 @@ import html
 import json
 from collections.abc import Iterable, Sequence
 from importlib.resources import files
+from string import Template
 from typing import Any
 
 import numpy as np
@@ -112,7 +113,7 @@ def render_page(
 
     Args:
         title: one line.
-        data: see :mod:`cellcolor.pictures.viewer.page`; None for a drawing.
+        data: what :func:`picture_data` makes, perhaps with a motion; None for a drawing.
         notes: lines under the legend.
         header: HTML under the title.
         cards: HTML under the picture.
@@ -136,13 +137,7 @@ def render_page(
         "DATA": _json(data),
         "SCRIPTS": "" if data is None else "\n".join(scripts),
     }
-    # What is filled in is not looked at again.
-    first, *pieces = _own_text("page.html").split("{{")
-    text = [first]
-    for piece in pieces:
-        name, _, rest = piece.partition("}}")
-        text += [parts[name], rest]
-    return "".join(text).encode()
+    return Template(_own_text("page.html")).substitute(parts).encode()
 
 
 def _json(data: dict[str, Any] | None) -> str:

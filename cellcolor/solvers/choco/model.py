@@ -24,7 +24,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from cellcolor.data.instance import Instance
-from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds.cover import Region, color_regions
 from cellcolor.solvers.bounds.grouping import best_grouping
@@ -61,7 +60,7 @@ class Problem:
     regions: tuple[Region, ...]
 
     @classmethod
-    def of(cls, instance: Instance, deadline: Deadline = NEVER) -> Problem:
+    def of(cls, instance: Instance) -> Problem:
         """The live graph of an instance.
 
         Raises:
@@ -69,7 +68,6 @@ class Problem:
             TooLarge: a model would not fit into memory.
         """
         loops = only_loops(instance)
-        deadline.check()
         colors = {edge: frozenset(instance.joinable(edge)) for edge in instance.live_edges}
         own = tuple(frozenset(cell.colors) for cell in instance.cells)
         problem = cls(tuple(loops), colors, own, tuple(color_regions(instance)))

@@ -33,8 +33,8 @@ class ChocoSolver(ProgramPeer):
     name, package, module, called = "choco", "pychoco", "pychoco", "pychoco"
 
     def begin(self, search: Search, folder: Path) -> Started:
-        instance, deadline = search.instance, search.deadline
-        Problem.of(instance, deadline)  # what cannot be solved is refused here
+        instance = search.instance
+        Problem.of(instance)  # what cannot be solved is refused here
         search.known = (Bound("strangers", _fewest(instance), "surface"),)
         file = folder / "instance.json"
         file.write_text(instance.to_json(), encoding="utf-8")
@@ -49,7 +49,7 @@ class ChocoSolver(ProgramPeer):
             if told.get("proved"):
                 search.done()
 
-        return [sys.executable, "-m", __name__, file, str(deadline.left)], hear
+        return [sys.executable, "-m", __name__, file, str(search.deadline.left)], hear
 
 
 def _fewest(instance: Instance) -> int:
@@ -73,7 +73,7 @@ def _main(path: str, seconds: float) -> None:
         resource.setrlimit(resource.RLIMIT_DATA, (MOST_MEMORY, MOST_MEMORY))
     deadline = Deadline.after(seconds)
     instance = Instance.read(path)
-    built = Ranks(Problem.of(instance, deadline), _fewest(instance))
+    built = Ranks(Problem.of(instance), _fewest(instance))
     size = {"variables": built.variables, "constraints": built.constraints}
     print(json.dumps(size), flush=True)
     for solution in built.solutions(deadline.left):
