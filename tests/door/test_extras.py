@@ -24,7 +24,7 @@ def test_planning_asks_for_the_extra_before_anything_is_built(
 ) -> None:
     """Whatever is missing of it: what the front end needs comes with it."""
     monkeypatch.setitem(sys.modules, module, None)
-    monkeypatch.setattr(planning, "_built", None)
+    monkeypatch.setattr(planning, "scene_of", None)
     assert run("plan", "wok", "-o", str(tmp_path / "out")) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line == f"cellcolor: planning a motion: {LINE.format(module)}"

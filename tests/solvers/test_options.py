@@ -47,7 +47,7 @@ def test_refused(options: dict[str, Any], field: str, message: str) -> None:
     assert message in refusal.value.message
 
 
-@pytest.mark.parametrize("options", [{"strands": 0}, {"workers": 0}, {"seed": -1}])
+@pytest.mark.parametrize("options", [{"workers": 0}, {"seed": -1}])
 def test_the_oracle_refuses_before_it_searches(options: dict[str, int]) -> None:
     # One cell: its range is known before the search space `surface` is come to.
     with pytest.raises(InputError) as refusal:

@@ -225,13 +225,26 @@ class Planner:
     def _demands(self, kinds: Sequence[Mapping[int, int]]) -> Iterable[dict[int, int | None]]:
         """The regions of the merged cells that have to be touched, with the kinds there.
 
-        Merged cells of the same regions and kinds are touched together.
+        Merged cells of the same regions and kinds are touched together. One needs no constraint if
+        another one implies it: if it lies in all regions of the other one, and in each of them has
+        the kind of the other one or no kind.
         """
         different = dict.fromkeys(
             tuple((region, kinds[region].get(merged_cell)) for region in regions)
             for merged_cell, regions in self._regions_of.items()
         )
-        return map(dict, different)
+        demands = [dict(key) for key in different]
+        lying_in: dict[int, set[int]] = defaultdict(set)
+        for number, own in enumerate(demands):
+            for region in own:
+                lying_in[region].add(number)
+        implied = {
+            other
+            for number, own in enumerate(demands)
+            for other in set.intersection(*(lying_in[region] for region in own)) - {number}
+            if all(demands[other][region] in (None, kind) for region, kind in own.items())
+        }
+        return [own for number, own in enumerate(demands) if number not in implied]
 
     def _read(self, kinds: Sequence[Mapping[int, int]]) -> SegmentPlan:
         """The last plan, with each merged cell given to the first segment that touches it."""
