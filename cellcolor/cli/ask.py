@@ -37,13 +37,14 @@ def stops_of(text: str) -> tuple[str, tuple[float, ...]]:
     joint, _, spaced = text.partition("=")
     try:
         low, high, step = map(float, spaced.split(":"))
-        count = (high - low) / step
+        count = (high - low) / step + 1
     except (ValueError, ZeroDivisionError):
-        count = -1.0
-    if not joint or not 0 <= count <= _MOST_STOPS:
+        count = 0.0
+    if not joint or not 1 <= count <= _MOST_STOPS + 1e-9:
         asked = f"stops are JOINT=FROM:TO:STEP, at most {_MOST_STOPS}, as in rail_joint=0:2:0.25"
         raise click.BadParameter(f"{asked}, is {text!r}.")
-    return joint, tuple(low + step * number for number in range(int(count + 1e-9) + 1))
+    inside = min if step > 0 else max  # of the last one, which rounding can move beyond it
+    return joint, tuple(inside(low + step * n, high) for n in range(int(count + 1e-9)))
 
 
 def _print(file: Path, rows: Iterable[dict[str, Any]], text: object, as_json: bool) -> None:

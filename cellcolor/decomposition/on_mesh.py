@@ -42,17 +42,27 @@ def _curves(
 
     The decomposition numbers edges in the order in which it finds their curves, so the curves are
     looked for again in that order. An edge has to have the same cells on its sides and the same
-    joinable colors as the curve of its number. Otherwise another program has numbered the edges.
+    joinable colors as the curve of its number, and the same neighbors on the cells' loops.
     """
     borders = Borders(surface, vertex_cell)
     curves = dict(enumerate(borders.curves(), start=1))
     if curves.keys() != {edge.id for edge in instance.edges}:
         return {}
+    loops = loops_of(borders, list(curves.values()), NEVER)
+    for cell in instance.cells:
+        if {*map(_from_least, loops.get(cell.id, ()))} != {*map(_from_least, cell.loops)}:
+            return {}
     for edge in instance.edges:
         kind = edge.left, edge.right, frozenset(instance.joinable(edge.id))
         if borders.kind(curves[edge.id][0]) != kind:
             return {}
     return curves
+
+
+def _from_least(loop: Sequence[int]) -> tuple[int, ...]:
+    """A cyclic list from its least dart on."""
+    first = loop.index(min(loop))
+    return (*loop[first:], *loop[:first])
 
 
 _Side = tuple[int, int, tuple[int, ...]]

@@ -202,7 +202,7 @@ class Rapid(_Common):
         yield "    here := CJointT();"
         for axis, angle in enumerate(start.degrees.tolist(), start=1):
             yield f"    IF Abs(here.robax.rax_{axis} - ({angle:.6f})) > {_START_DEG} THEN"
-            yield from (f'      TPWrite "{_NOT_THERE}";', "      Stop;", "    ENDIF")
+            yield from (f'      TPWrite "{_NOT_THERE}";', "      EXIT;", "    ENDIF")
 
     def joint(self, job: Job, move: Move) -> str:
         zone = "fine" if move.stops else "z0"
@@ -239,7 +239,6 @@ class Krl(_Common):
         return f"  {move}" if said else f"  {speed}\n  {move}"
 
     def head(self, job: Job) -> Iterable[str]:
-        self._speeds.clear()
         yield "&ACCESS RVP"
         yield "&COMMENT cellcolor: KRL, degrees and mm"
         yield f"DEF {job.name}( )"
@@ -252,10 +251,12 @@ class Krl(_Common):
         yield from ("  $APO.CDIS = 0.5", *self.calls(job), "END")
 
     def begin(self, number: int, start: Move) -> Iterable[str]:
+        self._speeds.clear()  # each stretch may be called by itself
         yield f"DEF stretch_{number}( )"
         for axis, angle in enumerate(start.degrees.tolist(), start=1):
-            yield f"  IF ABS($AXIS_ACT.A{axis} - ({angle:.5f})) > {_START_DEG} THEN"
-            yield from (f"    HALT ; {_NOT_THERE}", "  ENDIF")
+            # A program goes on behind a HALT, so it has to come here again.
+            yield f"  WHILE ABS($AXIS_ACT.A{axis} - ({angle:.5f})) > {_START_DEG}"
+            yield from (f"    HALT ; {_NOT_THERE}", "  ENDWHILE")
 
     def joint(self, job: Job, move: Move) -> str:
         del job

@@ -317,7 +317,7 @@ class _Master:
 
 
 def _within(surfaces: Sequence[LabelledSurface], one: Region, other: Region) -> bool:
-    """Whether a region has all vertices and edges of another one."""
+    """Whether the other region has all vertices and edges of the one."""
     if one is other:
         return True
     if not one.vertices <= other.vertices:

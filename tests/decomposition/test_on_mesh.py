@@ -88,6 +88,28 @@ def test_no_curve_is_known_of_edges_that_somebody_else_has_numbered() -> None:
     assert len(instance.cells) == len(made.instance.cells)
 
 
+def test_two_edges_alike_that_have_changed_their_numbers_are_noticed() -> None:
+    """Above and below a hole: the same cells, the same colors, but not the same neighbors."""
+    made = decomposition_of(drawn("aabb a..b aabb", {"a": [0, 1], "b": [0], ".": []}))
+    alike = [e.id for e in made.instance.edges if (e.left, e.right) == (0, 1)]
+    assert len(alike) == 2
+    other = dict(zip(alike, reversed(alike), strict=True))
+    cells = tuple(
+        replace(
+            cell,
+            loops=tuple(
+                tuple(other.get(abs(d), abs(d)) * (1 if d > 0 else -1) for d in loop)
+                for loop in cell.loops
+            ),
+        )
+        for cell in made.instance.cells
+    )
+    surface = drawn("aabb a..b aabb", {"a": [0, 1], "b": [0], ".": []})
+    assert locate(surface, made.instance, made.vertex_cell).curves
+    swapped = replace(made.instance, cells=cells)
+    assert not locate(surface, swapped, made.vertex_cell).curves
+
+
 def test_a_color_less_across_one_edge_is_noticed() -> None:
     surface = drawn("ab ab", {"a": [0, 1], "b": [0, 1, 2]})
     made = decomposition_of(surface)

@@ -199,6 +199,8 @@ def test_a_stop_at_which_the_part_stands_in_the_arm_is_left_out() -> None:
 
 def test_stops_are_read_and_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert stops_of("rail=0:0.5:0.25") == ("rail", (0.0, 0.25, 0.5))
+    # 0.2 · 3 is above 0.6, where the rail may end.
+    assert stops_of("rail=0:0.6:0.2") == ("rail", (0.0, 0.2, 0.4, 0.6))
     assert stops_of("turn=-1:1:0.8") == ("turn", (-1.0, -1 + 0.8, -1 + 1.6))
     for wrong in (
         "rail",

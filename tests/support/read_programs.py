@@ -192,7 +192,7 @@ def read_rapid(text: str) -> Program:
                 line,
             ),
             (r"stretch_(\d+);", "", found.call),
-            (r"VAR jointtarget here;|here := CJointT\(\);|Stop;|ConfL\\Off;", "", None),
+            (r"VAR jointtarget here;|here := CJointT\(\);|EXIT;|ConfL\\Off;", "", None),
             (r'TPWrite "[^"]*";', "", None),
         ],
     )
@@ -227,10 +227,11 @@ def read_krl(text: str) -> Program:
         [
             (rf"; (?:As planned,|and) (TOOL|BASE)_DATA\[\d+\] = {six}", "", frame),
             (r";.*|&ACCESS RVP|&COMMENT .*", "", None),
-            (r"DEF \w+\( \)|DEF speed_of_axes\(percent :IN\)", "+def", None),
+            # What one stretch says of speeds the next one, called by itself, does not know.
+            (r"DEF \w+\( \)|DEF speed_of_axes\(percent :IN\)", "+def", said.clear),
             ("END", "-def", None),
-            (rf"IF ABS\(\$AXIS_ACT\.A(\d) - \(({N})\)\) > {N} THEN", "+if", found.ask),
-            ("ENDIF", "-if", None),
+            (rf"WHILE ABS\(\$AXIS_ACT\.A(\d) - \(({N})\)\) > {N}", "+while", found.ask),
+            ("ENDWHILE", "-while", None),
             ("FOR i = 1 TO 6", "+for", None),
             ("ENDFOR", "-for", None),
             (r"speed_of_axes\((\d+)\)", "", lambda own: said.update(share=int(own) / 100)),
