@@ -25,13 +25,7 @@ from cellcolor.data.instance import Coverage, Instance
 from cellcolor.data.value import Document, Value, adapter_of, read_one_of
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
-from cellcolor.files.documents import (
-    is_json,
-    parse_json,
-    read_text,
-    take_body,
-    validate,
-)
+from cellcolor.files.documents import is_json, parse_json, read_text, take_body, validate
 from cellcolor.files.validation import settle
 from cellcolor.union_find import UnionFind
 

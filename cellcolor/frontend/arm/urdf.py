@@ -1,9 +1,8 @@
 """URDF text, checked and read: links with their shapes, joints, and how they hang together.
 
 Other readers answer most URDF faults with the same sentence, read a missing limit as [0, 0] and a
-missing inertial as no mass, and drop collision shapes they do not know with a remark on standard
-error. So the XML is read here, as far as the front end needs it. The first fault is raised as an
-:class:`~cellcolor.errors.InputError` that names file and field.
+missing inertial as no mass, and drop unknown collision shapes with a remark on standard error. So
+the XML is read here; the first fault is an :class:`~cellcolor.errors.InputError`.
 """
 
 from __future__ import annotations
