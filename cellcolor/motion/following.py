@@ -134,18 +134,27 @@ class Followed:
 
 
 def follow(
-    prepared: PreparedScene, samples: Samples, branch: int, deadline: Deadline = NEVER
+    prepared: PreparedScene,
+    samples: Samples,
+    branch: int,
+    deadline: Deadline = NEVER,
+    together: int | None = None,
 ) -> Followed:
     """Follow a branch, and judge every sample by the tests of the cells.
 
     The test for jumps between two samples is that for mesh edges (``docs/frontend.md``,
     "Continuity"), so no jump is ever smoothed over.
+
+    Args:
+        together: so many samples are a way of their own; None for one way.
     """
     branches = np.full(len(samples), branch, dtype=np.intp)
     found = prepared.arm.follow(samples.points, -samples.normals, branches)
     verdicts = prepared.judge(found, deadline)
     valid = verdicts.reasons == VALID
     both = np.flatnonzero(valid[:-1] & valid[1:])
+    if together is not None:  # a straight line from one way to the next can pass a singularity
+        both = both[(both + 1) % together != 0]
     steps = np.column_stack([both, both + 1])
     motions = follow_edges(
         Surface(samples.points, np.empty((0, 3), dtype=np.int64), samples.normals),

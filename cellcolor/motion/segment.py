@@ -179,7 +179,7 @@ def course(ground: Ground, path: ToolPath, places: Array, branch: int) -> tuple[
         # Only the new samples are followed, each between its neighbors.
         middle = (places[rows] + places[rows + 1]) / 2
         threes = np.column_stack([places[rows], middle, places[rows + 1]]).ravel()
-        between = follow(prepared, at(threes), branch, deadline)
+        between = follow(prepared, at(threes), branch, deadline, together=3)
         places = np.insert(places, rows + 1, middle)
         joints = np.insert(joints, rows + 1, between.joints[1::3], axis=0)
         torn = torn.copy()

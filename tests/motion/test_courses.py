@@ -48,7 +48,7 @@ def course(passed_within: float, monkeypatch: pytest.MonkeyPatch) -> tuple[Sampl
         def __call__(self, joints: np.ndarray, _deadline: Any) -> Any:
             return SimpleNamespace(reasons=np.zeros(len(joints)))
 
-    def follow(_prepared: Any, samples: Samples, *_: Any) -> Followed:
+    def follow(_prepared: Any, samples: Samples, *_: Any, **__: Any) -> Followed:
         angle = np.arctan(samples.points[:, 0] / passed_within)[:, None]
         reasons = np.zeros(len(samples), dtype=np.uint8)
         return Followed(angle, reasons, np.zeros(len(samples) - 1, dtype=bool))
@@ -156,3 +156,24 @@ def test_samples_go_round_the_ends_of_cracks(pattern: str, seed: int) -> None:
         steps = {(min(a, b), max(a, b)) for a, b in pairwise(owners.tolist()) if a != b}
         assert len(steps) > 20
         assert not steps & set(cracks)
+
+
+def test_from_one_way_to_another_nothing_is_followed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The straight line there may pass a singularity, where steps are as small as can be: a drawn
+    scene took minutes."""
+    seen: list[Any] = []
+
+    def follow_edges(_surface: Any, steps: np.ndarray, *_: Any) -> Any:
+        seen.extend(steps.tolist())
+        return SimpleNamespace(smooth=np.zeros(len(steps), dtype=bool))
+
+    monkeypatch.setattr(following, "follow_edges", follow_edges)
+    monkeypatch.setattr(following, "unwound", lambda joints, _: joints)
+    monkeypatch.setattr(following, "joint_space", lambda _: None)
+    arm = SimpleNamespace(follow=lambda points, *_: points, measure=None, probe=None)
+    verdicts = SimpleNamespace(reasons=np.zeros(6, dtype=np.uint8), determinants=np.ones(6))
+    prepared: Any = SimpleNamespace(arm=arm, judge=lambda *_: verdicts)
+    samples = Samples(np.eye(6, 3), np.eye(6, 3), np.zeros(6, dtype=np.intp))
+    found = following.follow(prepared, samples, 0, together=3)
+    assert seen == [[0, 1], [1, 2], [3, 4], [4, 5]]
+    assert found.torn.tolist() == [True, True, False, True, True]
