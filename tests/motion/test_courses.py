@@ -170,7 +170,7 @@ def test_from_one_way_to_another_nothing_is_followed(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(following, "follow_edges", follow_edges)
     monkeypatch.setattr(following, "unwound", lambda joints, _: joints)
     monkeypatch.setattr(following, "joint_space", lambda _: None)
-    arm = SimpleNamespace(follow=lambda points, *_: points, measure=None, probe=None)
+    arm = SimpleNamespace(follow=lambda points, *_: points, measure=None, probe=len)
     verdicts = SimpleNamespace(reasons=np.zeros(6, dtype=np.uint8), determinants=np.ones(6))
     prepared: Any = SimpleNamespace(arm=arm, judge=lambda *_: verdicts)
     samples = Samples(np.eye(6, 3), np.eye(6, 3), np.zeros(6, dtype=np.intp))
