@@ -18,11 +18,7 @@ import cellcolor
 ALLOWED = {
     ("frontend/relaxing.py", "_contact_of_links"): "twice: all links, then each pair of them",
     ("files/validation.py", "plain"): "how deeply the annotations of a dataclass nest",
-    ("data/value.py", "_plain"): "how deeply the annotations of a dataclass nest",
-    ("data/value.py", "members_of"): "likewise",
-    ("data/value.py", "every_member_of"): "likewise",
     ("frontend/arm/link_mesh.py", "_below"): "the folders looked into, _DEEPEST",
-    ("questions/explaining.py", "_cutting"): "how often a list of things can be halved",
     ("frontend/tables.py", "_settled"): "how deeply TOML nests, which its reader limits",
     ("solvers/cpsat/cell_divisions.py", "decide"): "the darts of a cell, MOST_DARTS",
 }
