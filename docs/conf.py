@@ -67,7 +67,7 @@ nitpick_ignore_regex = [
     (r"py:class", r"Outside|CoverChoice"),  # literals
     (
         r"py:class",
-        r"Ge|Gt|Le|Lt|MinLen|[\d.e-]+|dict\[(str|int)|tuple\[~pathlib\.Path|list\[list\[tuple\[int",
+        r"Ge|Gt|Le|Lt|MinLen|[\d.e-]+|dict\[(str|int)|(Mapping|tuple)\[str|lambda|tuple\[~pathlib\.Path|list\[list\[tuple\[int",
     ),
     # Signatures of the front door that Sphinx takes as they are written: they name classes that
     # only type checkers import there.

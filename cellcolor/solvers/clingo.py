@@ -20,7 +20,7 @@ from cellcolor.errors import TooLarge
 from cellcolor.files.writing import shipped_folder
 from cellcolor.solvers.interface import Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains, only_loops
-from cellcolor.solvers.peers import Peer, Search
+from cellcolor.solvers.peers import Peer, PeerSearch
 
 if TYPE_CHECKING:
     from clingo import Model
@@ -60,7 +60,7 @@ class ClingoSolver(Peer):
         control.load(str(MODEL))
         control.add("base", [], facts)
         control.ground([("base", [])])
-        heard = Search(instance, deadline, options.seed, progress)
+        heard = PeerSearch(instance, deadline, options.seed, progress)
 
         def on_model(model: Model) -> None:
             color: dict[int, int] = {}

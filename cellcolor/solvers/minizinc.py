@@ -21,7 +21,7 @@ from cellcolor.errors import SolverMissing, TooLarge
 from cellcolor.files.writing import shipped_folder
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.joined_chains import division_of_chains, only_loops
-from cellcolor.solvers.peers import ProgramPeer, Search, Started
+from cellcolor.solvers.peers import PeerSearch, ProgramPeer, Started
 
 _MOST_PAIRS = 30_000
 """The most pairs of darts of one cell: the model has a constraint for each, and MiniZinc takes a
@@ -113,7 +113,7 @@ class _MiniZinc(ProgramPeer):
     def version(self) -> str:
         return self._known or self.name
 
-    def begin(self, search: Search, folder: Path) -> Started:
+    def begin(self, search: PeerSearch, folder: Path) -> Started:
         file = folder / "instance.dzn"
         file.write_text(minizinc_data(search.instance), encoding="ascii")
         color: dict[int, int] = {}

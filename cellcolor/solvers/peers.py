@@ -51,7 +51,7 @@ class Peer:
 
 
 @dataclass
-class Search:
+class PeerSearch:
     """What a solver is given, and what it has said so far.
 
     Attributes:
@@ -93,7 +93,7 @@ class ProgramPeer(Peer, ABC):
     proof: ClassVar[str] = "search"  # the kind of its bounds
 
     @abstractmethod
-    def begin(self, search: Search, folder: Path) -> Started:
+    def begin(self, search: PeerSearch, folder: Path) -> Started:
         """Write what the program reads into a folder."""
 
     def minimize(
@@ -107,7 +107,7 @@ class ProgramPeer(Peer, ABC):
         deadline = options.deadline.earlier(0.05 * min(options.deadline.left, 10.0))
         # A signal may end this early, as an OutOfTime.
         with tempfile.TemporaryDirectory(prefix="cellcolor-") as place, suppress(OutOfTime):
-            search = Search(instance, deadline, options.seed, progress)
+            search = PeerSearch(instance, deadline, options.seed, progress)
             command, hear = self.begin(search, Path(place))
             with Child(command, Path(place)) as child:
                 for line in child.lines(deadline):

@@ -18,7 +18,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.cover import color_regions, greedy_independent_set
 from cellcolor.solvers.choco.model import Problem, Ranks
 from cellcolor.solvers.joined_chains import division_of_chains
-from cellcolor.solvers.peers import ProgramPeer, Search, Started
+from cellcolor.solvers.peers import PeerSearch, ProgramPeer, Started
 
 MOST_MEMORY = 3 * 2**30
 """Bytes of memory that the process may take; then it ends, and what it has found is kept."""
@@ -32,7 +32,7 @@ class ChocoSolver(ProgramPeer):
 
     name, package, module, called = "choco", "pychoco", "pychoco", "pychoco"
 
-    def begin(self, search: Search, folder: Path) -> Started:
+    def begin(self, search: PeerSearch, folder: Path) -> Started:
         instance = search.instance
         Problem.of(instance)  # what cannot be solved is refused here
         search.known = (Bound("strangers", _fewest(instance), "surface"),)

@@ -16,7 +16,7 @@ from typing import ClassVar, Literal
 from cellcolor.solvers.joined_chains import division_of_chains
 from cellcolor.solvers.linear.coloring import Coloring, joined_and_linked
 from cellcolor.solvers.linear.model import mps, wcnf
-from cellcolor.solvers.peers import ProgramPeer, Search, Started
+from cellcolor.solvers.peers import PeerSearch, ProgramPeer, Started
 
 
 class _Rival(ProgramPeer):
@@ -25,7 +25,7 @@ class _Rival(ProgramPeer):
     proof = "model"
     ending: ClassVar[Literal["mps", "wcnf"]] = "mps"  # of the file that it reads
 
-    def begin(self, search: Search, folder: Path) -> Started:
+    def begin(self, search: PeerSearch, folder: Path) -> Started:
         coloring = Coloring(search.instance)
         file = folder / f"model.{self.ending}"
         with file.open("w", encoding="ascii") as stream:
