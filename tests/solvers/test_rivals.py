@@ -207,7 +207,7 @@ def test_the_best_at_the_time_limit(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_worse_division_does_not_replace_a_better_one() -> None:
     instance = planar_graph(3, 7, 11, 3)
     told: list[tuple[int | None, int]] = []
-    search = peers.Search(instance, NEVER, 0, lambda *at: told.append(at))
+    search = peers.PeerSearch(instance, NEVER, 0, lambda *at: told.append(at))
     best = solve(instance, Options(), REFERENCE)
     assert best.cells is not None and best.segments is not None
     search.found(best.cells)
